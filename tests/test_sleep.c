@@ -416,6 +416,27 @@ static void loose_ends_count(void **state) {
             }
 }
 
+/* One of two that a constraint joins is taken out, the other sleeps, and the first comes back. */
+static void what_comes_back_is_joined_again(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "", 0.05, 2, 0.1, 3);
+    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, b), first_of(world, a)}, 1, NULL, NULL));
+    until_asleep(world, a, 600);
+    assert_true(skein_body_asleep(world, b));
+    OK(world, skein_set(world, a, "enabled", skein_number(0)));
+    steps(world, 1, dt);
+    until_asleep(world, b, 600);
+    OK(world, skein_set(world, a, "enabled", skein_number(1)));
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, a) || skein_body_asleep(world, b));
+    until_asleep(world, a, 600);
+    throw_particle(world, first_of(world, a), 0, 0.2, 0);
+    steps(world, 1, dt);
+    assert_false(skein_body_asleep(world, a) || skein_body_asleep(world, b));
+    skein_world_destroy(world);
+}
+
 /* A collider that a motion leads, fast and from standing still, pushes what sleeps as it does what is awake. */
 static void what_sets_out_fast_is_seen(void **state) {
     (void)state;
@@ -826,6 +847,7 @@ int main(void) {
         cmocka_unit_test(what_a_collider_held_falls),
         cmocka_unit_test(what_stands_pinned_wakes),
         cmocka_unit_test(loose_ends_count),
+        cmocka_unit_test(what_comes_back_is_joined_again),
         cmocka_unit_test(what_sets_out_fast_is_seen),
         cmocka_unit_test(vertices_that_are_led_are_seen),
         cmocka_unit_test(nobody_falls_asleep_in_the_air),
