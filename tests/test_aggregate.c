@@ -3,6 +3,7 @@
 #include <skein/cut.h>
 
 #include "irregular.h"
+#include "swing.h"
 #include "world/world.h"
 
 static const double dt = 1.0 / 60;
@@ -66,19 +67,8 @@ static void a_mesh_that_swings_is_firm(void **state) {
     skein_world_destroy(world);
 }
 
-/* When the middle of the cloth swings through below the pins, the second time. */
 static double time_of_swing(uint32_t side, int substeps) {
-    skein_world *world = swinging(side, substeps, 1, 0);
-    double before = 0, when = 0;
-    for (int n = 0, crossed = 0; n < 120 && crossed < 2; n++) {
-        steps(world, 1, dt);
-        double z = 0;
-        for (size_t i = 0; i < side * side; i++) z += (position_of(world, i).z + 0.5) / (side * side);
-        if (n && z * before < 0 && ++crossed == 2) when = (n + before / (before - z)) / 60;
-        before = z;
-    }
-    skein_world_destroy(world);
-    return when;
+    return time_of_swing_of(swinging(side, substeps, 1, 0), (size_t)side * side, -0.5);
 }
 
 static void a_swing_keeps_its_time(void **state) {

@@ -1,6 +1,6 @@
 /* Coarse grids of a cloth: what swings stays firm and keeps its time, nothing gains momentum, and what is taken in every
  * second substep gains no energy. */
-#include "helpers.h"
+#include "swing.h"
 #include "world/world.h"
 
 enum { SIDE = 64 };
@@ -82,19 +82,8 @@ static void stiff_bending_does_not_shiver(void **state) {
     stay_firm(sheets, COUNT(sheets));
 }
 
-/* When the middle of the cloth swings through below the pins, the second time. */
 static double time_of_swing(uint32_t side, int substeps, double limit) {
-    skein_world *world = swinging(side, substeps, 0, limit);
-    double before = 0, when = 0;
-    for (int n = 0, crossed = 0; n < 120 && crossed < 2; n++) {
-        steps(world, 1, 1.0 / 60);
-        double z = 0;
-        for (size_t i = 0; i < side * side; i++) z += (position_of(world, i).z - position_of(world, 0).z) / (side * side);
-        if (n && z * before < 0 && ++crossed == 2) when = (n + before / (before - z)) / 60;
-        before = z;
-    }
-    skein_world_destroy(world);
-    return when;
+    return time_of_swing_of(swinging(side, substeps, 0, limit), (size_t)side * side, -0.5);
 }
 
 static void a_swing_keeps_its_time(void **state) {

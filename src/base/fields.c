@@ -146,6 +146,14 @@ skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets
     return status;
 }
 
+bool sk_values_are_same(const skein_value *a, const skein_value *b) {
+    if (a->count != b->count) return false;
+    if (!a->count) return !strcmp(a->text ? a->text : "", b->text ? b->text : "");
+    for (int k = 0; k < a->count; k++)
+        if (a->number[k] < b->number[k] || a->number[k] > b->number[k]) return false;
+    return true;
+}
+
 skein_value sk_field_load(const skein_field *field, const void *params) {
     const char *at = (const char *)params + field->offset;
     skein_value value = {number_count(field->type), {0, 0, 0}, NULL};

@@ -56,6 +56,8 @@ void sk_fields_clear(sk_allocator *allocator, const skein_field *fields, size_t 
 /* Checks and stores one value. */
 skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, void *params, const skein_value *value,
                             skein_error *error);
+/* Whether two values are one number, or one text. */
+bool sk_values_are_same(const skein_value *a, const skein_value *b);
 skein_value sk_field_load(const skein_field *field, const void *params);
 /* Stores the values that the chosen word in `params` stands for. */
 skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,

@@ -140,6 +140,10 @@ struct sk_batch {
     bool compiled;           /* compiled code runs it, which needs no blocks of groups */
 };
 
+/* Whether corrections of its elements are carried on to other particles, by a coarse grid or an aggregate. */
+static inline bool sk_batch_carries(const sk_batch *batch) {
+    return batch->coarse || batch->aggregate;
+}
 /* Makes a batch from copies of the arrays; NULL when there is no memory. `rest` has rest_count x count reals, `scale`
  * (or NULL) `count`. It keeps the pointer to the parameters. */
 sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *type, const void *params, size_t count,

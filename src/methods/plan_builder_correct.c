@@ -105,49 +105,40 @@ static void add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector
     }
 }
 
-/* Sweeps over the distances of a coarse grid, forward and backward; then the grid's movement is interpolated to the
- * particles between. That movement is known only from a prediction. */
-static void write_coarse(sk_plan_builder *builder, const sk_batch *batch) {
-    const sk_coarse *coarse = batch->coarse;
-    if (!builder->predicted || !batch->sweep_count || !batch->sweeps[0].strips) return;
-    for (int time = 0; time < coarse->times; time++)
+/* Sweeps over distances whose corrections are carried on, forward and backward in turn. */
+static void add_carried_sweeps(sk_plan_builder *builder, const sk_batch *batch, int times) {
+    for (int time = 0; time < times; time++)
         for (size_t i = 0; i < batch->sweep_count; i++)
             add_sweep(builder, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_OP_LIMIT,
                       &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS);
-    if (!coarse->carries) return;
-    sk_walk walk = batch->sweeps[0].walk;
-    walk.reach = sk_coarse_reach(coarse);
-    sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
-                               .order = SK_ORDERED,
-                               .kernel = sk_coarse_carry.version[builder->isa],
-                               .dst = SK_X,
-                               .source = {SK_X, SK_X0, SK_V},
-                               .coefficient = {0, builder->h},
-                               .from_prediction = true,
-                               .rule = coarse,
-                               .label = "carried along",
-                               .walk = walk,
-                               .end = walk.rows});
 }
 
-/* The same over the distances of hubs, which then carry the vertices around them. */
-static void write_aggregate(sk_plan_builder *builder, const sk_batch *batch) {
-    const sk_aggregate *aggregate = batch->aggregate;
-    if (!builder->predicted) return;
-    for (int time = 0; time < aggregate->times; time++)
-        for (size_t i = 0; i < batch->sweep_count; i++)
-            add_sweep(builder, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_OP_LIMIT,
-                      &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS);
+/* What they have moved since the prediction is carried to the particles between: over `rows`, along the walk if there is one. */
+static void add_carry(sk_plan_builder *builder, const sk_kernels *kernels, const void *rule, sk_walk walk, size_t rows) {
     sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
                                .order = SK_ORDERED,
-                               .kernel = sk_aggregate_carry.version[builder->isa],
+                               .kernel = kernels->version[builder->isa],
                                .dst = SK_X,
                                .source = {SK_X, SK_X0, SK_V},
                                .coefficient = {0, builder->h},
                                .from_prediction = true,
-                               .rule = aggregate,
+                               .rule = rule,
                                .label = "carried along",
-                               .end = 1});
+                               .walk = walk,
+                               .end = rows});
+}
+
+/* The distances of a coarse grid or of hubs, and then what these carry. That is known only from a prediction. */
+static void write_carriers(sk_plan_builder *builder, const sk_batch *batch) {
+    const sk_coarse *coarse = batch->coarse;
+    const sk_aggregate *aggregate = batch->aggregate;
+    if (!builder->predicted || (coarse && (!batch->sweep_count || !batch->sweeps[0].strips))) return;
+    add_carried_sweeps(builder, batch, coarse ? coarse->times : aggregate->times);
+    if (aggregate) add_carry(builder, &sk_aggregate_carry, aggregate, (sk_walk){0}, 1);
+    if (!coarse || !coarse->carries) return;
+    sk_walk walk = batch->sweeps[0].walk;
+    walk.reach = sk_coarse_reach(coarse);
+    add_carry(builder, &sk_coarse_carry, coarse, walk, walk.rows);
 }
 
 /* Whether a cloth has its coarse grids: with methods that predict, and until it is cut. */
@@ -172,8 +163,7 @@ static void write_spans(sk_plan_builder *builder) {
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->only_bounds || !has_bound(batch)) continue;
-        if (batch->coarse) write_coarse(builder, batch);
-        else if (batch->aggregate) write_aggregate(builder, batch);
+        if (sk_batch_carries(batch)) write_carriers(builder, batch);
         else add_sweeps(builder, batch, 0, SK_OP_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
     write_tethers(builder, SK_LIMIT_AFTER_COARSE, seldom_of(builder));
@@ -259,7 +249,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bo
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (!has_bound(batch) || batch->coarse || batch->aggregate) continue;
+        if (!has_bound(batch) || sk_batch_carries(batch)) continue;
         if (batch->only_bounds && velocity == SK_NONE) continue; // write_spans() has written them
         const sk_sweep_kernels *kernels = velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving;
         for (int left = first ? 1 : limit_sweeps_of(batch); left > 0; left--)

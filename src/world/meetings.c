@@ -118,9 +118,10 @@ skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
 static void mark_sleepers(const skein_world *world, bool asleep, uint8_t *presence) {
     const sk_particles *all = &world->particles;
     for (size_t i = 0; i < all->count; i++) presence[i] = asleep && all->presence[i] == SK_ASLEEP ? SK_HERE : SK_ASIDE;
-    for (size_t i = 0; i < world->objects.count; i++)
-        if (world->objects.data[i]->category == SKEIN_BODY && sk_world_stands(world, world->objects.data[i]->as.body))
-            memset(presence + world->objects.data[i]->as.body->first_particle, SK_HERE, world->objects.data[i]->as.body->particle_count);
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_body *body = sk_world_body_at(world, i);
+        if (body && sk_world_stands(world, body)) memset(presence + body->first_particle, SK_HERE, body->particle_count);
+    }
 }
 
 /* Prepares `own`, a rule like another that meets nobody but those, with its lists of whom. False when there is no memory. */

@@ -7,10 +7,6 @@
 #include "base/union_find.h"
 #include "world/sleep.h"
 
-static sk_body *body_at(const skein_world *world, size_t i) {
-    return world->objects.data[i]->category == SKEIN_BODY ? world->objects.data[i]->as.body : NULL;
-}
-
 void sk_box_widen(const sk_particles *all, const sk_body *body, real ahead, real low[3], real high[3]) {
     for (size_t i = 0; i < body->particle_count; i++) {
         const size_t slot = all->slot_of[body->first_particle + i];
@@ -38,7 +34,7 @@ static real reach_of_rules(const skein_world *world) {
         if (force->type->meeting) reach = fmax(reach, 2 * sk_object_number(object, "thickness"));
     }
     for (size_t i = 0; i < world->objects.count && reach >= 0; i++)
-        if (body_at(world, i)) reach = fmax(reach, 2 * sk_object_number(world->objects.data[i], "contact.thickness"));
+        if (sk_world_body_at(world, i)) reach = fmax(reach, 2 * sk_object_number(world->objects.data[i], "contact.thickness"));
     return (real)reach;
 }
 
@@ -83,7 +79,7 @@ static bool list_bodies(skein_world *world, double ahead, sk_neighbours *r) {
         return false;
     }
     for (size_t i = 0; i < world->objects.count; i++) {
-        sk_body *body = body_at(world, i);
+        sk_body *body = sk_world_body_at(world, i);
         if (!body || !body->enabled || !body->particle_count) continue;
         sk_sleeper *s = &r->of[r->count];
         *s = (sk_sleeper){.body = body, .common = &world->objects.data[i]->common.plain, .index = (uint32_t)r->count};

@@ -196,14 +196,6 @@ static skein_status leave_groups(skein_world *world, const sk_object *object, co
     return leaves ? sk_world_remember_names(world, object->common.plain.groups) : SKEIN_OK;
 }
 
-/* Whether a field has that value already: programs set much of what they show in each frame. */
-static bool has_value(const skein_field *field, const void *params, const skein_value *value) {
-    const skein_value now = sk_field_load(field, params);
-    if (now.count != value->count) return false;
-    if (!now.count) return !strcmp(now.text ? now.text : "", value->text ? value->text : "");
-    return !memcmp(now.number, value->number, (size_t)now.count * sizeof *now.number);
-}
-
 /* A body that sleeps wakes where a field of it is set; and all do where something else is, or whether a body is there, but for a
  * collider that is only put elsewhere: that wakes whom it comes near. */
 static void rouse(skein_world *world, const sk_object *object, const char *name, const double place[15]) {
@@ -241,7 +233,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
                        name, skein_category_text(object->category));
     sk_collider *collider = object && object->category == SKEIN_COLLIDER ? object->as.collider : NULL;
     double place[15];
-    const bool same = has_value(field, params, &value);
+    const skein_value before = sk_field_load(field, params);
+    const bool same = sk_values_are_same(&value, &before); // programs set much of what they show in each frame
     if (collider) sk_collider_own_place(collider, place);
     if (collider) sk_collider_note(collider, world->time);
     skein_status status = leave_groups(world, object, field);

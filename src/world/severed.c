@@ -65,7 +65,7 @@ void sk_cut_find_sides(sk_cut *cut) {
 }
 
 void sk_cut_look_at(sk_cut *cut, sk_batch *batch) {
-    if (!batch->only_bounds || batch->coarse || batch->aggregate || batch->most_edges || batch->arity != 2) return;
+    if (!batch->only_bounds || sk_batch_carries(batch) || batch->most_edges || batch->arity != 2) return;
     const uint32_t *particle = batch->whole.particle ? batch->whole.particle : batch->particle;
     size_t count = batch->whole.particle ? batch->whole.count : batch->count;
     uint32_t most = 1;
@@ -113,7 +113,7 @@ static bool spans_cut_face(const sk_cut *cut, const uint32_t *particle, size_t a
 bool sk_cut_severs(const void *data, const sk_batch *batch, const uint32_t *particle) {
     sk_cut *cut = (sk_cut *)(uintptr_t)data; // it changes only the marks of searches
     uint32_t first = cut->body->first_particle;
-    if (batch->coarse || batch->aggregate) return true;
+    if (sk_batch_carries(batch)) return true;
     for (size_t i = 0; i < batch->arity; i++)
         if (particle[i] - first >= cut->body->particle_count) return false; // it is also on another body's
     if (spans_cut_face(cut, particle, batch->arity)) return true;

@@ -23,10 +23,6 @@ static const double still_for = 0.5; /* s */
 
 /* ---- bodies ---- */
 
-static sk_body *body_at(const skein_world *world, size_t i) {
-    return world->objects.data[i]->category == SKEIN_BODY ? world->objects.data[i]->as.body : NULL;
-}
-
 static void forget_places(skein_world *world, sk_body *body) {
     sk_release(&world->allocator, body->rest.from);
     body->rest.from = NULL;
@@ -52,7 +48,7 @@ static void wake(skein_world *world, sk_body *body) {
 
 void sk_world_wake_all(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) {
-        sk_body *body = body_at(world, i);
+        sk_body *body = sk_world_body_at(world, i);
         if (!body) continue;
         wake(world, body);
         sk_body_forget_rest(world, body);
@@ -70,10 +66,10 @@ void sk_world_rouse_at(skein_world *world, size_t first, size_t count) {
     bool any = false;
     world->sleepers_known = false;
     for (size_t i = 0; i < world->objects.count && !any; i++)
-        any = body_at(world, i) && (body_at(world, i)->rest.asleep || body_at(world, i)->rest.from);
+        any = sk_world_body_at(world, i) && (sk_world_body_at(world, i)->rest.asleep || sk_world_body_at(world, i)->rest.from);
     if (!any) return; // nobody sleeps, or is about to
     for (size_t i = 0; i < world->objects.count; i++) {
-        sk_body *body = body_at(world, i);
+        sk_body *body = sk_world_body_at(world, i);
         if (!body) continue;
         const size_t begin = body->first_particle, end = begin + body->particle_count;
         if (begin >= first + count || first >= end) continue;
@@ -110,7 +106,7 @@ static void wake_islands(const sk_neighbours *r, double dt) {
 /* What is known of rest begins anew for all that was changed. */
 static void forget_what_was_roused(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) {
-        sk_body *body = body_at(world, i);
+        sk_body *body = sk_world_body_at(world, i);
         if (!body || !(world->roused || body->rest.roused)) continue;
         forget_places(world, body);
         body->rest.roused = false;
@@ -201,7 +197,7 @@ static void let_sleep(const sk_neighbours *r, double dt) {
 skein_status sk_world_let_sleep(skein_world *world, double dt, skein_error *error) {
     bool any = false, ready = false, good = true;
     for (size_t i = 0; i < world->objects.count; i++)
-        any |= body_at(world, i) && (world->objects.data[i]->common.plain.sleep > 0 || body_at(world, i)->rest.from);
+        any |= sk_world_body_at(world, i) && (world->objects.data[i]->common.plain.sleep > 0 || sk_world_body_at(world, i)->rest.from);
     if (!any || is_sleepless(world)) return SKEIN_OK;
     sk_neighbours r;
     if (!sk_neighbours_find(world, 0, dt, &r)) return sk_fail_memory(error, "bodies that sleep");

@@ -41,14 +41,6 @@ skein_value sk_take_value(sk_byte_reader *r) {
     return value;
 }
 
-static bool is_same(const skein_value *a, const skein_value *b) {
-    if (a->count != b->count) return false;
-    if (!a->count) return !strcmp(a->text ? a->text : "", b->text ? b->text : "");
-    for (int k = 0; k < a->count; k++)
-        if (a->number[k] < b->number[k] || a->number[k] > b->number[k]) return false;
-    return true;
-}
-
 /* ---- what an object was built of ---- */
 
 static uint64_t hash_bytes(uint64_t hash, const void *bytes, size_t size) {
@@ -363,7 +355,7 @@ static skein_status take_fields(sk_byte_reader *r, skein_world *world, sk_object
         skein_value now = sk_field_load(field, params);
         bool track = object && object->category == SKEIN_MOTION && object->as.motion->type->given &&
                      !strcmp(object->as.motion->type->given, name); // a file: what was in it is compared
-        if (track || is_same(&value, &now)) continue;
+        if (track || sk_values_are_same(&value, &now)) continue;
         if (is_same_file(field, &value, &now) && !skein_field_is_live(world, handle, name)) continue;
         if (!apply) {
             char there[48], here[48];

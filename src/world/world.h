@@ -220,6 +220,11 @@ struct skein_world {
     sk_share *share;            /* NULL: this is the whole run */
 };
 
+/* The body that an object at a place of the list is; NULL: another. */
+static inline sk_body *sk_world_body_at(const skein_world *world, size_t i) {
+    return world->objects.data[i]->category == SKEIN_BODY ? world->objects.data[i]->as.body : NULL;
+}
+
 /* ---- for the catalogue: adding objects of a known type ---- */
 
 skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, const skein_mesh *mesh,
