@@ -1,6 +1,9 @@
 /* Dihedral: the angle between the triangles p0 p1 p2 and p1 p0 p3 over their edge p0 p1, minus that at rest, wrapped to
  * -pi to pi. Computed by atan2, so it is accurate near flat. As bending of a sheet of rigidity B (N m) an edge of
- * length l between triangles of areas A and A' has the stiffness B l^2/(A + A') (bodies/hinges.c). */
+ * length l between triangles of areas A and A' has the stiffness B l^2/(A + A') (bodies/hinges.c).
+ * A projection turns by half a radian at most. Where a fine mesh crumples its angles are large and as good as rigid, and a
+ * scanned man of 17,495 vertices, 2 mm apart and pinned by his head, flew apart (99th percentile of stretch 1,084 %; 24 without
+ * bending; at most 2 radians 824, 1 32, 0.5 27, 0.1 27). What is soft, or near its rest, turns by less than that. */
 #include "base/elementary.h"
 #include "base/polynomial.h"
 
@@ -8,6 +11,7 @@
 #define SK_RESTS 1
 #define SK_FORMULA "constraints/emitted/dihedral.h"
 #define SK_WITH_STRIPS
+#define SK_MOST_CHANGE 0.5
 #define SK_UNIT dihedral
 #include "constraints/element.h"
 #ifdef SK_ISA

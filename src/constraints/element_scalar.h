@@ -35,6 +35,12 @@ static inline double reciprocal(one_element *e, double x) {
 
 #include SK_FORMULA
 
+#ifdef SK_MOST_CHANGE
+#define SK_MOST_CHANGE_OR_0 SK_MOST_CHANGE
+#else
+#define SK_MOST_CHANGE_OR_0 0
+#endif
+
 #ifdef SK_ONE_SIDED // (element_arithmetic.h)
 #define SK_IS_ONE_SIDED true
 #else
@@ -140,5 +146,5 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
     .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
     .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply),  \
     .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
-    .text = formula_text, .linear = SK_IS_LINEAR
+    .text = formula_text, .linear = SK_IS_LINEAR, .most_change = SK_MOST_CHANGE_OR_0
 #endif

@@ -11,8 +11,9 @@
  *   X- += H (dl u - (p/D) (c d + 2 (1 + c) dl W g)) - (p/D) (1 + c) g,    X0- += (p/D) c g,    l- -= (p/D) a
  *   a- = -(p/D) (l + dl),    c- = -(p/D) (g d + dl S)
  *
- * one product with the matrix of second derivatives H. Where C = |L| - R is the length of a linear function L = sum of q x, as of a
- * distance and of most bending, g = q n with n = L/|L|, and with T = sum of q u and F = sum of q d all of it is
+ * one product with the matrix of second derivatives H. Where a kind's largest change m ended it, dl is m/S or -m/S, and
+ * X- += H dl (u - 2 (p/S) W g). Where C = |L| - R is the length of a linear function L = sum of q x, as of a distance and of most
+ * bending, g = q n with n = L/|L|, and with T = sum of q u and F = sum of q d all of it is
  *
  *   X- += q (dl/|L| (T - n n T) - (p/D) (c/|L| (F - n n F) + (1 + c) n))
  *
@@ -26,8 +27,9 @@
 
 typedef enum sort_of_kind { BY_LENGTH, BY_DIFFERENCES } sort_of_kind;
 
-/* How a projection ended: its particles stayed, or went to C = 0 as far as it is soft, or a one-sided one let go. */
-typedef enum outcome { STAYED, MOVED, LET_GO } outcome;
+/* How a projection ended: its particles stayed, or went to C = 0 as far as it is soft, or as far as the kind goes at once, or a
+ * one-sided one let go. */
+typedef enum outcome { STAYED, MOVED, BOUNDED, LET_GO } outcome;
 
 /* What a projection of C = |L| - R found. */
 typedef struct found_length {
@@ -251,6 +253,9 @@ static bool project(pass *s, size_t lane, found *f) {
     if (!(f->below > 0) || !(f->weight > 0) || (one_sided && f->value >= 0 && !(f->multiplier > 0))) return true;
     f->outcome = MOVED;
     f->change = (-f->value - soft * f->multiplier - (s->gamma > 0 ? s->gamma * change_since_start(s, f) : 0)) / f->below;
+    double most = s->p->batch->type->most_change;
+    if (most > 0 && fabs(f->change) * f->weight > most)
+        f->outcome = BOUNDED, f->below = f->weight, f->change = copysign(most, f->change) / f->weight;
     if (one_sided && s->keeps && f->multiplier + f->change < 0) f->outcome = LET_GO, f->change = -f->multiplier;
     for (size_t i = 0; i < s->arity; i++) {
         double w = (double)s->a->projections->x[slot[i]].w, to[3];
@@ -308,24 +313,26 @@ static bool differ(const pass *s, const found *f, double (*z)[3], double (*out)[
 static bool reverse_moved(pass *s, size_t lane, const found *f, double (*u)[3], double (*bar)[3], double along) {
     sk_projections *all = s->a->projections;
     const uint32_t *slot = slots_of(s, f->element);
-    double soft = softness_of(s, lane), stiff = 1 + s->gamma, share = along / f->below;
+    bool by_value = f->outcome != BOUNDED;
+    double soft = by_value ? softness_of(s, lane) : 0, gamma = by_value ? s->gamma : 0, stiff = 1 + gamma, share = along / f->below;
     double z[SK_MOST_ARITY][3], turned[SK_MOST_ARITY][3], x0[SK_MOST_ARITY][3], since = change_since_start(s, f);
     if (f->outcome == LET_GO) share = 0;
     take(all->start, slot, s->arity, x0);
     for (size_t i = 0; i < s->arity; i++)
         for (int k = 0; k < 3; k++)
-            z[i][k] = f->change * u[i][k] - share * (s->gamma * (f->x[i][k] - x0[i][k]) +
+            z[i][k] = f->change * u[i][k] - share * (gamma * (f->x[i][k] - x0[i][k]) +
                                                      2 * stiff * f->change * (double)all->x[slot[i]].w * f->gradient[i][k]);
     if (!differ(s, f, z, turned)) return false;
     for (size_t i = 0; i < s->arity; i++) {
         sk_vec4 *start = &all->bar_start[slot[i]];
-        double by_start = share * s->gamma;
-        for (int k = 0; k < 3; k++) bar[i][k] += turned[i][k] - share * stiff * f->gradient[i][k];
+        double by_start = share * gamma;
+        for (int k = 0; k < 3; k++) bar[i][k] += turned[i][k] - (by_value ? share * stiff * f->gradient[i][k] : 0);
         start->x += (real)(by_start * f->gradient[i][0]);
         start->y += (real)(by_start * f->gradient[i][1]);
         start->z += (real)(by_start * f->gradient[i][2]);
     }
     if (s->keeps) s->p->bar[lane] -= f->outcome == LET_GO ? along : share * soft;
+    if (!by_value) return true;
     s->by_softness -= share * soft * (f->multiplier + f->change);
     s->by_gamma -= share * (since + f->change * f->weight);
     return true;

@@ -156,8 +156,22 @@ SK_INLINE sk_wide pull(const sk_element *e, const sk_element_constants *c) {
     return only_active(e, e->active, push);
 }
 
+/* above / below, of which a kind with SK_MOST_CHANGE takes no more than would change C by that (which has no divisor then): a
+ * gradient says nothing about where it leads after more. */
+SK_INLINE sk_wide multiplier_of(sk_wide above, sk_wide weight, sk_wide below) {
+#ifdef SK_MOST_CHANGE
+    sk_wide most = sk_splat((real)SK_MOST_CHANGE);
+    sk_mask over = sk_more(sk_wide_abs(above) * weight, most * below);
+    above = sk_select(over, sk_select(sk_negative(above), -most, most), above);
+    below = sk_select(over, weight, below);
+#else
+    (void)weight;
+#endif
+    return sk_keep(sk_positive(below), above / below);
+}
+
 SK_INLINE sk_wide project(const sk_element *e) {
-    sk_wide above = -e->value, below = weight_of(e);
+    sk_wide above = -e->value, weight = weight_of(e), below = weight;
     if (e->is_energy) {
         sk_wide square = square_of(e);
         above = -square, below = below + soft_of(e, square);
@@ -165,7 +179,7 @@ SK_INLINE sk_wide project(const sk_element *e) {
         below = below + e->soft;
     }
     if (e->divided) below = e->divisor * below;
-    return only_active(e, e->active, sk_keep(sk_positive(below), above / below));
+    return only_active(e, e->active, multiplier_of(above, weight, below));
 }
 
 /* The multiplier is kept up to date. */
@@ -185,7 +199,7 @@ SK_INLINE sk_wide project_kept(sk_element *e, const sk_element_constants *c, sk_
         below = (1 + c->gamma) * weight + e->soft;
         above -= c->gamma * change_by(e, moved, c->step);
     }
-    sk_wide change = sk_keep(sk_positive(below), above / below);
+    sk_wide change = multiplier_of(above, weight, below);
     change = only_active(e, e->one_sided ? e->active | sk_positive(e->multiplier) : e->active, change);
     if (e->one_sided) change = sk_select(sk_negative(e->multiplier + change), -e->multiplier, change);
     e->multiplier += change;
