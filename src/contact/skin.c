@@ -1,6 +1,6 @@
-/* The skin: vertices, edges and triangles of all that a rule acts on, dealt to leaves. Two triangles that follow each other
- * and have an edge in common are one leaf, as those of a grid's cell do; each vertex and each edge belongs to the first
- * leaf that has it, and they are numbered in the order of the leaves. */
+/* The skin: vertices, edges and triangles of all that a rule acts on, dealt to leaves. Two triangles that have an edge in common
+ * are one leaf, as those of a grid's cell are (leaves.c); each vertex and each edge belongs to the first leaf that has it, and
+ * they are numbered in the order of the leaves. */
 #include <string.h>
 
 #include "base/union_find.h"
@@ -13,6 +13,9 @@ typedef struct making {
     sk_skin *skin;
     const sk_particles *particles;
     uint32_t *vertex_of; /* of the user's particles */
+    uint8_t *here;       /* of triangles: they take part */
+    uint32_t *partner;   /* with whom each is a leaf, */
+    uint32_t *order;     /* and which comes when */
     uint32_t *table;     /* of edges, by their ends: open addressing */
     size_t mask;
 } making;
@@ -75,17 +78,22 @@ static bool takes_part(const making *m, const sk_only *only, uint32_t particle) 
     return sk_particle_is_here(m->particles, particle) && sk_only_has(only, particle);
 }
 
-static void add_all(making *m, const sk_only *only, const sk_meeting_parts *parts) {
+static bool add_all(making *m, sk_allocator *allocator, const sk_only *only, const sk_meeting_parts *parts) {
     sk_skin *skin = m->skin;
-    const uint32_t *last = NULL; // the first triangle of a leaf that may take another
     for (size_t t = 0; t < parts->triangle_count; t++) {
         const uint32_t *corner = parts->triangle[t];
-        if (!takes_part(m, only, corner[0]) || in_common(corner, corner) > 3) continue;
-        bool joins = last && in_common(last, corner) == 2;
-        if (!joins) open_leaf(skin);
-        add_triangle(m, corner);
+        m->here[t] = takes_part(m, only, corner[0]) && in_common(corner, corner) == 3;
+    }
+    if (!sk_leaves_deal(m->partner, m->order, allocator, m->particles, parts, m->here)) return false;
+    for (size_t i = 0; i < parts->triangle_count; i++) {
+        const uint32_t t = m->order[i], partner = m->partner[t];
+        if (!m->here[t]) continue; // or it is in an earlier leaf
+        m->here[t] = false;
+        if (partner != NOBODY) m->here[partner] = false;
+        open_leaf(skin);
+        add_triangle(m, parts->triangle[t]);
+        if (partner != NOBODY) add_triangle(m, parts->triangle[partner]);
         close_leaf(skin);
-        last = joins ? NULL : corner;
     }
     for (size_t e = 0; e < parts->edge_count; e++) {
         const uint32_t *end = parts->edge[e];
@@ -95,6 +103,7 @@ static void add_all(making *m, const sk_only *only, const sk_meeting_parts *part
         add_edge(m, a, b);
         close_leaf(skin);
     }
+    return true;
 }
 
 static void find_pieces(sk_skin *skin) {
@@ -181,12 +190,18 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
     skin->leaf = sk_allocate(allocator, (triangles + parts->edge_count + 1) * sizeof *skin->leaf);
     m.vertex_of = sk_allocate(allocator, (particles->count + 1) * sizeof *m.vertex_of);
     m.table = sk_allocate(allocator, size * sizeof *m.table);
+    m.here = sk_allocate(allocator, triangles + 1);
+    m.partner = sk_allocate(allocator, (triangles + 1) * sizeof *m.partner);
+    m.order = sk_allocate(allocator, (triangles + 1) * sizeof *m.order);
     bool good = skin->particle && skin->piece && skin->built && skin->edge && skin->triangle && skin->leaf &&
-                skin->thickness && skin->friction && m.vertex_of && m.table;
+                skin->thickness && skin->friction && m.vertex_of && m.table && m.here &&
+                m.partner && m.order;
     if (good) {
         memset(m.vertex_of, 0xff, particles->count * sizeof *m.vertex_of);
         memset(m.table, 0xff, size * sizeof *m.table);
-        add_all(&m, only, parts);
+        good = add_all(&m, allocator, only, parts);
+    }
+    if (good) {
         find_pieces(skin);
         measure_spacing(skin);
         take_own(skin, parts);
@@ -194,6 +209,9 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
     }
     sk_release(allocator, m.vertex_of);
     sk_release(allocator, m.table);
+    sk_release(allocator, m.here);
+    sk_release(allocator, m.partner);
+    sk_release(allocator, m.order);
     if (!good) sk_skin_release(skin, allocator);
     return good;
 }

@@ -42,6 +42,13 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
                   const sk_meeting_parts *parts);
 void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
 
+/* ---- leaves.c ---- */
+
+/* Finds the triangle with which each of those that are `here` is one leaf, or UINT32_MAX, and the order of all. False when there is
+ * no memory. */
+bool sk_leaves_deal(uint32_t *partner, uint32_t *order, sk_allocator *allocator, const sk_particles *particles,
+                    const sk_meeting_parts *parts, const uint8_t *here);
+
 /* ---- ignored.c ---- */
 
 /* Reads the pairs of names, of bodies and of groups, and numbers the leaves of the bodies that have them. False when there is
