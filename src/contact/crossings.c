@@ -24,11 +24,15 @@ static double flat(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c) {
     return share * far * sqrt(x * x + y * y + z * z);
 }
 
+static bool have_corner(const uint32_t edge[2], const uint32_t t[3]) {
+    return (edge[0] == t[0]) | (edge[0] == t[1]) | (edge[0] == t[2]) | (edge[1] == t[0]) | (edge[1] == t[1]) | (edge[1] == t[2]);
+}
+
 static bool crosses(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3]) {
-    for (int i = 0; i < 3; i++)
-        if (edge[0] == t[i] || edge[1] == t[i]) return false;
     const sk_vec4 *p = &x[edge[0]], *q = &x[edge[1]], *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
-    double one = volume(a, b, c, p), two = volume(a, b, c, q), least = flat(a, b, c);
+    double one = volume(a, b, c, p), two = volume(a, b, c, q);
+    if (!((one > 0 && two < 0) || (one < 0 && two > 0))) return false; // most
+    double least = flat(a, b, c);
     if (!((one > least && two < -least) || (one < -least && two > least))) return false;
     double ab = volume(p, q, a, b), bc = volume(p, q, b, c), ca = volume(p, q, c, a);
     return (ab > 0 && bc > 0 && ca > 0) || (ab < 0 && bc < 0 && ca < 0);
@@ -41,6 +45,7 @@ static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *
     sk_touch_need_features(touch, a), sk_touch_need_features(touch, b);
     for (uint32_t e = edges->first_edge; e < edges->first_edge + edges->edges; e++)
         for (uint32_t t = triangles->first_triangle; t < triangles->first_triangle + triangles->triangles; t++) {
+            if (have_corner(skin->edge[e], skin->triangle[t])) continue; // as around a leaf most have
             if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
             if (!crosses(touch->p, skin->edge[e], skin->triangle[t])) continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
