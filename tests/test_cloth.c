@@ -519,6 +519,18 @@ static void faults_of_meshes_are_warnings(void **state) {
     assert_int_equal(statistics_of(world).nonfinite, 0);
     skein_world_destroy(world);
 
+    // a sliver, as scanners leave them
+    memset(d, 0, sizeof *d);
+    vertex(d, 0, 0, 0), vertex(d, 1, 0, 0), vertex(d, 1, 1, 0), vertex(d, 0, 1, 0), vertex(d, 0.02, 1, 0);
+    FACE(d, 0, 1, 2);
+    FACE(d, 0, 2, 4);
+    FACE(d, 0, 4, 3);
+    world = world_with_notes(&n);
+    build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
+    assert_string_equal(n.text, "cloth: 1 edge is shorter than a tenth of the mean, which is 0.92 m, such as 3-4 with 0.02 m; such are "
+                                "stretched most: weld (a distance, such as 0.2) joins their ends\n");
+    skein_world_destroy(world);
+
     // two squares beside each other whose common border was never joined
     memset(d, 0, sizeof *d);
     for (int k = 0; k < 2; k++) vertex(d, k, 0, 0), vertex(d, k + 1, 0, 0), vertex(d, k + 1, 1, 0), vertex(d, k, 1, 0);

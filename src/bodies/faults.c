@@ -88,10 +88,41 @@ static bool warn_about_seams(skein_world *world, const char *label, const sk_she
     return good;
 }
 
+static double length_of(const sk_sheet *sheet, const sk_edge *edge) {
+    double square = 0;
+    for (int k = 0; k < 3; k++) {
+        const double way = sheet->position[edge->b][k] - sheet->position[edge->a][k];
+        square += way * way;
+    }
+    return sqrt(square);
+}
+
+/* Edges that are far shorter than others, as scanned meshes have them: next to no mass is at their ends, and what a sweep leaves of
+ * the long ones beside them stretches them manyfold. */
+static void warn_about_short_edges(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs) {
+    const double share = 0.1, joined = 0.2; // of the mean: who is told of, and what would be joined
+    double mean = 0, least = HUGE_VAL;
+    size_t count = 0;
+    const sk_edge *example = NULL;
+    for (size_t e = 0; e < springs->edge_count; e++) mean += length_of(sheet, &springs->edges[e]) / (double)springs->edge_count;
+    for (size_t e = 0; e < springs->edge_count; e++) {
+        const double length = length_of(sheet, &springs->edges[e]);
+        if (!(length < share * mean)) continue;
+        count++;
+        if (length < least) least = length, example = &springs->edges[e];
+    }
+    if (count)
+        sk_world_log(world, SKEIN_LOG_WARNING,
+                     "%s: %zu edge%s shorter than a tenth of the mean, which is %.2g m, such as %u-%u with %.2g m; such are stretched "
+                     "most: weld (a distance, such as %.1g) joins their ends",
+                     label, count, count == 1 ? " is" : "s are", mean, example->a, example->b, least, joined * mean);
+}
+
 skein_status sk_report_faults(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs,
                               skein_error *error) {
     if (!world->desc.log || sheet->grid_rows) return SKEIN_OK;
     warn_about_faces(world, label, sheet, springs);
+    warn_about_short_edges(world, label, sheet, springs);
     if (!warn_about_parts(world, label, sheet, springs) || !warn_about_seams(world, label, sheet, springs))
         return sk_fail_memory(error, "checking the mesh");
     return SKEIN_OK;
