@@ -528,7 +528,7 @@ static void faults_of_meshes_are_warnings(void **state) {
     world = world_with_notes(&n);
     build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
     assert_string_equal(n.text, "cloth: 1 edge is shorter than a tenth of the mean, which is 0.92 m, such as 3-4 with 0.02 m; such are "
-                                "stretched most: weld (a distance, such as 0.2) joins their ends\n");
+                                "stretched most: weld (a distance, such as 0.09) joins what is nearer\n");
     skein_world_destroy(world);
 
     // two squares beside each other whose common border was never joined

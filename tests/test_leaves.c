@@ -49,16 +49,23 @@ static double spread_of(const sk_skin *skin) {
 
 static void cells_of_a_grid_are_leaves(void **state) {
     (void)state;
-    skein_world *world = new_world("xpbd", 1);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 30), SKEIN_PAIR("size", 2, 1)), NULL));
-    const sk_skin *skin = skin_of(world);
-    assert_int_equal(skin->leaf_count, 19 * 29);
-    assert_int_equal(check_leaves(skin, 2 * 19 * 29, 19 * 29 + 20 * 29 + 19 * 30), 0);
-    for (size_t i = 0; i < skin->leaf_count; i++) { // in their order: row after row
-        const uint32_t first = skin->particle[skin->triangle[skin->leaf[i].first_triangle][0]];
-        assert_in_range(first, i / 29 * 30, (i / 29 + 2) * 30 - 1);
+    static const size_t grids[][2] = {{20, 30}, {4, 200}, {200, 3}};
+    for (size_t g = 0; g < COUNT(grids); g++) {
+        const size_t rows = grids[g][0], columns = grids[g][1], cells = (rows - 1) * (columns - 1);
+        skein_world *world = new_world("xpbd", 1);
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", (double)rows, (double)columns),
+                                                SKEIN_PAIR("size", 0.01 * (double)columns, 0.02 * (double)rows)), NULL));
+        const sk_skin *skin = skin_of(world);
+        assert_int_equal(skin->leaf_count, cells);
+        assert_int_equal(check_leaves(skin, 2 * cells, cells + rows * (columns - 1) + (rows - 1) * columns), 0);
+        for (size_t i = 0; i < cells; i++) { // in their order: row after row
+            const uint32_t first = skin->particle[skin->triangle[skin->leaf[i].first_triangle][0]];
+            const size_t row = i / (columns - 1);
+            assert_in_range(first, row * columns, (row + 2) * columns - 1);
+        }
+        skein_world_destroy(world);
     }
-    skein_world_destroy(world);
 }
 
 /* A closed sheet of triangles in any order, as scanners write them. */

@@ -100,7 +100,7 @@ static double length_of(const sk_sheet *sheet, const sk_edge *edge) {
 /* Edges that are far shorter than others, as scanned meshes have them: next to no mass is at their ends, and what a sweep leaves of
  * the long ones beside them stretches them manyfold. */
 static void warn_about_short_edges(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs) {
-    const double share = 0.1, joined = 0.2; // of the mean: who is told of, and what would be joined
+    const double share = 0.1; // of the mean
     double mean = 0, least = HUGE_VAL;
     size_t count = 0;
     const sk_edge *example = NULL;
@@ -114,8 +114,8 @@ static void warn_about_short_edges(skein_world *world, const char *label, const 
     if (count)
         sk_world_log(world, SKEIN_LOG_WARNING,
                      "%s: %zu edge%s shorter than a tenth of the mean, which is %.2g m, such as %u-%u with %.2g m; such are stretched "
-                     "most: weld (a distance, such as %.1g) joins their ends",
-                     label, count, count == 1 ? " is" : "s are", mean, example->a, example->b, least, joined * mean);
+                     "most: weld (a distance, such as %.1g) joins what is nearer",
+                     label, count, count == 1 ? " is" : "s are", mean, example->a, example->b, least, share * mean);
 }
 
 skein_status sk_report_faults(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs,

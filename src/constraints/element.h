@@ -5,7 +5,8 @@
  * other vector L, and 0 at rest, may define SK_VECTOR and spread(), for the matrix of implicit solves: k J^T J with all
  * of J = dL/dx, since the gradient of the length says nothing about other directions. A kind with limits may define
  * SK_BEYOND(element, most), a cheap test that includes all lanes whose value is over `most`; one that only bounds
- * (SK_ONLY_BOUNDS) neither pulls nor projects. A kind may say by how much a projection changes C at most (SK_MOST_CHANGE). Kinds by formula, whose elements have any number of particles, define
+ * (SK_ONLY_BOUNDS) neither pulls nor projects. A kind without a divisor may say by how much a projection changes C at most
+ * (SK_MOST_CHANGE). Kinds by formula, whose elements have any number of particles, define
  * SK_ARITY as the largest number, and more (projection.h). */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H

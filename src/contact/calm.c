@@ -323,7 +323,10 @@ bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
     know_thicknesses(touch);
     calm->gone = 0;
     if (all) {
-        calm->room = 100 * calm->ceased <= calm->patch_count && !touch->storm ? narrow_room : wide_room;
+        const int searches = 8; // what has crumpled goes on; and in a storm nobody is seen to cease
+        if (touch->storm || 100 * calm->ceased > calm->patch_count) calm->wide_for = searches;
+        else if (calm->wide_for) calm->wide_for--;
+        calm->room = calm->wide_for ? wide_room : narrow_room;
         calm->ceased = 0;
     }
     sk_parallel_pieces(touch->tasks, 0, calm->patch_count, PATCHES_AT_ONCE, look_at_some, &job);
@@ -394,10 +397,12 @@ bool sk_calm_follow(sk_touch *touch, sk_allocator *allocator) {
 }
 
 bool sk_calm_disturb(sk_touch *touch, sk_allocator *allocator, size_t v) {
-    const sk_calm *calm = &touch->calm;
+    sk_calm *calm = &touch->calm;
     for (uint32_t k = calm->of_vertex_start[v]; k < calm->of_vertex_start[v + 1]; k++) {
         const sk_calm_patch *patch = &calm->patch[calm->of_vertex[k]];
-        if (patch->calm && patch->whole && !keep_pairs(touch, allocator, calm->of_vertex[k], true)) return false;
+        if (!patch->calm || !patch->whole) continue;
+        calm->ceased++;
+        if (!keep_pairs(touch, allocator, calm->of_vertex[k], true)) return false;
     }
     return true;
 }

@@ -36,7 +36,8 @@ typedef struct sk_calm_patch {
 
 typedef struct sk_calm {
     size_t patch_count, ceased; /* and how many have ceased to be calm since all were looked at, */
-    real room;                  /* which says how much room one needed then, a share of the thickness */
+    real room;                  /* which says how much room one needed then, a share of the thickness; */
+    int wide_for;               /* for so many such looks it is much */
     sk_calm_patch *patch;
     uint32_t *of_leaf;           /* of leaves: their patch */
     uint32_t *ring_start, *ring; /* of leaves: those that have a vertex in common with it, itself too */

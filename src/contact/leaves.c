@@ -127,9 +127,11 @@ static void pair_others(matching *m) {
 /* ---- the order ---- */
 
 /* Whether those from one to another lie about: how far apart, among them, those are that are beside each other. In rows it is a
- * third of a row. */
+ * third of a row; where nearly all are cells, these are in rows, however long. */
 static bool lie_about(const matching *m, size_t first, size_t end) {
-    double sum = 0, count = 0;
+    double sum = 0, count = 0, cells = 0;
+    for (size_t t = first; t < end; t++) cells += m->partner[t] == t + 1 || (t && m->partner[t] == t - 1);
+    if (cells > 0.9 * (double)(end - first)) return false;
     for (size_t t = first; t < end; t++)
         for (int k = 0; k < 3; k++) {
             if (m->beside[t][k] == NOBODY) continue;
@@ -151,12 +153,14 @@ static void follow_curve(const matching *m, size_t first, size_t end, uint64_t *
     sk_sort_by_place(place, order + first, place + (end - first), other, end - first);
 }
 
-/* The end of the run of triangles of one body from one on; of no body it is alone. */
-static size_t end_of_body(const matching *m, const sk_meeting_parts *parts, size_t first) {
+/* The end of the run of triangles of one body from one on; of no body it is alone. Bodies mostly follow each other, as triangles do:
+ * they are looked for from `at` on. */
+static size_t end_of_body(const matching *m, const sk_meeting_parts *parts, size_t first, size_t *at) {
     const uint32_t particle = m->triangle[first][0];
     size_t end = first + 1;
-    for (size_t b = 0; b < parts->body_count; b++) {
-        const sk_meeting_body *body = &parts->body[b];
+    for (size_t tried = 0; tried < parts->body_count; tried++, ++*at) {
+        if (*at >= parts->body_count) *at = 0;
+        const sk_meeting_body *body = &parts->body[*at];
         if (particle < body->first || particle >= body->end) continue;
         while (end < m->count && m->triangle[end][0] >= body->first && m->triangle[end][0] < body->end) end++;
         break;
@@ -168,8 +172,8 @@ static bool put_in_order(const matching *m, sk_allocator *allocator, const sk_me
     uint64_t *place = sk_allocate(allocator, 2 * (m->count + 1) * sizeof *place);
     uint32_t *other = sk_allocate(allocator, (m->count + 1) * sizeof *other);
     for (size_t t = 0; t < m->count; t++) order[t] = (uint32_t)t;
-    for (size_t first = 0, end; first < m->count && place && other; first = end) {
-        end = end_of_body(m, parts, first);
+    for (size_t first = 0, end, at = 0; first < m->count && place && other; first = end) {
+        end = end_of_body(m, parts, first, &at);
         if (lie_about(m, first, end)) follow_curve(m, first, end, place, order, other);
     }
     bool good = place && other;
