@@ -48,8 +48,8 @@ typedef struct sk_constraint_type {
     /* The rest values of an element whose particles stand at x[0 .. arity); false when there is no memory. */
     bool (*rest)(const void *params, const double (*x)[3], double *rest);
     bool linear;    /* its elastic forces are linear in the positions, and 0 where all stand at the origin */
-    double most_change; /* of C in one projection; 0: any */
     bool in_blocks; /* groups that share no particle are computed together */
+    double most_change; /* of C in one projection; 0: any */
     sk_sweep_kernels force;
     sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
     sk_sweep_kernels project_damped; /* with damping or several passes: multipliers are kept */

@@ -6,8 +6,8 @@
  * of J = dL/dx, since the gradient of the length says nothing about other directions. A kind with limits may define
  * SK_BEYOND(element, most), a cheap test that includes all lanes whose value is over `most`; one that only bounds
  * (SK_ONLY_BOUNDS) neither pulls nor projects. A kind without a divisor may say by how much a projection changes C at most
- * (SK_MOST_CHANGE). Kinds by formula, whose elements have any number of particles, define
- * SK_ARITY as the largest number, and more (projection.h). */
+ * (SK_MOST_CHANGE). Kinds by formula, whose elements have any number of particles, define SK_ARITY as the largest number, and more
+ * (projection.h). */
 #ifndef SK_CONSTRAINTS_ELEMENT_H
 #define SK_CONSTRAINTS_ELEMENT_H
 

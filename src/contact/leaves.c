@@ -60,7 +60,7 @@ static bool find_beside(matching *m, sk_allocator *allocator) {
     for (uint32_t t = 0; t < m->count; t++)
         for (uint32_t k = 0; m->here[t] && k < 3; k++) {
             const uint32_t a = m->triangle[t][k], b = m->triangle[t][(k + 1) % 3], low = a < b ? a : b, high = a < b ? b : a;
-            size_t at = ((uint64_t)low * 0x9e3779b97f4a7c15u ^ (uint64_t)high * 0xc2b2ae3d27d4eb4fu) >> 20 & (size - 1);
+            size_t at = sk_edge_place(low, high, size - 1);
             for (; table[at] != NOBODY; at = (at + 1) & (size - 1)) {
                 const uint32_t other = table[at] / 3, of = table[at] % 3;
                 const uint32_t c = m->triangle[other][of], d = m->triangle[other][(of + 1) % 3];

@@ -37,7 +37,7 @@ static void add_edge(making *m, uint32_t a, uint32_t b) {
         uint32_t other = a;
         a = b, b = other;
     }
-    size_t at = ((uint64_t)a * 0x9e3779b97f4a7c15u ^ (uint64_t)b * 0xc2b2ae3d27d4eb4fu) >> 20 & m->mask;
+    size_t at = sk_edge_place(a, b, m->mask);
     for (; m->table[at] != NOBODY; at = (at + 1) & m->mask) {
         const uint32_t *edge = skin->edge[m->table[at]];
         if (edge[0] == a && edge[1] == b) return;
@@ -59,13 +59,6 @@ static void close_leaf(sk_skin *skin) {
     leaf->triangles = (uint8_t)(skin->triangle_count - leaf->first_triangle);
 }
 
-static int in_common(const uint32_t a[3], const uint32_t b[3]) {
-    int count = 0;
-    for (int i = 0; i < 3; i++)
-        for (int j = 0; j < 3; j++) count += a[i] == b[j];
-    return count;
-}
-
 static void add_triangle(making *m, const uint32_t corner[3]) {
     sk_skin *skin = m->skin;
     uint32_t v[3];
@@ -82,7 +75,7 @@ static bool add_all(making *m, sk_allocator *allocator, const sk_only *only, con
     sk_skin *skin = m->skin;
     for (size_t t = 0; t < parts->triangle_count; t++) {
         const uint32_t *corner = parts->triangle[t];
-        m->here[t] = takes_part(m, only, corner[0]) && in_common(corner, corner) == 3;
+        m->here[t] = takes_part(m, only, corner[0]) && corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
     }
     if (!sk_leaves_deal(m->partner, m->order, allocator, m->particles, parts, m->here)) return false;
     for (size_t i = 0; i < parts->triangle_count; i++) {
@@ -194,8 +187,7 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
     m.partner = sk_allocate(allocator, (triangles + 1) * sizeof *m.partner);
     m.order = sk_allocate(allocator, (triangles + 1) * sizeof *m.order);
     bool good = skin->particle && skin->piece && skin->built && skin->edge && skin->triangle && skin->leaf &&
-                skin->thickness && skin->friction && m.vertex_of && m.table && m.here &&
-                m.partner && m.order;
+                skin->thickness && skin->friction && m.vertex_of && m.table && m.here && m.partner && m.order;
     if (good) {
         memset(m.vertex_of, 0xff, particles->count * sizeof *m.vertex_of);
         memset(m.table, 0xff, size * sizeof *m.table);

@@ -42,6 +42,11 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
                   const sk_meeting_parts *parts);
 void sk_skin_release(sk_skin *skin, sk_allocator *allocator);
 
+/* Where an edge is looked for in a table with open addressing, whose size is a power of 2; `a` is the lesser end. */
+static inline size_t sk_edge_place(uint32_t a, uint32_t b, size_t mask) {
+    return ((uint64_t)a * 0x9e3779b97f4a7c15u ^ (uint64_t)b * 0xc2b2ae3d27d4eb4fu) >> 20 & mask;
+}
+
 /* ---- leaves.c ---- */
 
 /* Finds the triangle with which each of those that are `here` is one leaf, or UINT32_MAX, and the order of all. False when there is
