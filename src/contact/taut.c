@@ -8,7 +8,9 @@
  * thread would catch what flies away. If it would, the one that goes the greater share of its way goes less. Planes of the
  * bound hold for smaller shares, too; and with equal shares an edge is never longer than the longer of before and after, for
  * lengths are convex. The twentieth is what lets a taut sheet turn: where one of its corners is stopped, neighbours go on a
- * third of a cell to one side, and the sheet does not stop as if it were a board. */
+ * third of a cell to one side, and the sheet does not stop as if it were a board.
+ *
+ * Not where somebody has yielded to pins (yield.c): what then followed depended on which pairs had been known before. */
 #include "contact/touch.h"
 
 /* Vertices whose edges are to be looked at, in a ring. */
