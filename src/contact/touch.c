@@ -316,7 +316,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
         *run->supported = false;
     }
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
-    touch->followed = false;
+    touch->followed = touch->corrects = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     good = good && list_near(touch, run->allocator);
     if (run->near_at < run->time || run->near_at > run->time) run->near = false; // of this substep nobody has said yet
@@ -327,7 +327,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
-enum { VERTEX_ARRAYS = 34 };
+enum { VERTEX_ARRAYS = 36 };
 
 /* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
 static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
@@ -340,6 +340,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
+    LIST(waiting, vertices), LIST(waits, vertices);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);

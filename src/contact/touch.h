@@ -84,6 +84,7 @@ typedef struct sk_touch {
     bool alone;      /* no other rule meets */
     bool found;      /* whether the pairs are of this skin */
     bool followed;   /* the last bound has seen where all went */
+    bool corrects;   /* the method corrects positions: edges are held taut (taut.c) */
     bool remembers;  /* all have been seen */
     bool held;       /* a vertex is pinned */
     bool untouched;  /* hardly any pairs are kept: courses may be wide */
@@ -128,6 +129,8 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
+    uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
+    uint8_t *waits;    /* and whether it is one of them */
     uint8_t *lost;    /* it is looked for */
     uint8_t *wild;    /* it has left its course and has none: it is looked for on its way in each substep */
     size_t wild_count;
@@ -320,6 +323,11 @@ sk_op_kernel sk_touch_hold;
 bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all);
 /* Looks for those that are lost, on their ways: they are wild from now on. */
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
+
+/* ---- taut.c ---- */
+
+/* Lowers shares further (next_share, where they are less than share), so that no edge tears at who is held back. */
+void sk_touch_hold_taut(sk_touch *touch);
 
 /* ---- yield.c ---- */
 
