@@ -14,6 +14,7 @@ typedef struct sk_panel_bounds {
  * common way. */
 typedef struct sk_course_values {
     real share, off;
+    bool held; // somebody may be held back, and goes
     sk_vec3 common;
 } sk_course_values;
 /* Of places x of vertices; J is noted. With `course`, returns whether a panel is off its course. */
@@ -57,7 +58,11 @@ SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l
     const sk_wide low = *sk_row(c->low[0][k] + l), high = *sk_row(c->high[0][k] + l);
     const sk_wide least = low + share * (*sk_row(c->low[1][k] + l) - low) - off;
     const sk_wide most = high + share * (*sk_row(c->high[1][k] + l) - high) + off;
-    const sk_wide first = sk_least_wide(b->low[k], *sk_row(panels->low[k] + l) + way), last = sk_most_wide(b->high[k], *sk_row(panels->high[k] + l) + way);
+    sk_wide first = b->low[k], last = b->high[k];
+    if (course->held) {
+        first = sk_least_wide(first, *sk_row(panels->low[k] + l) + way);
+        last = sk_most_wide(last, *sk_row(panels->high[k] + l) + way);
+    }
     return sk_more_bits(least, first) | sk_more_bits(last, most);
 }
 
@@ -154,7 +159,7 @@ static void measure_some(void *data, int thread, size_t begin, size_t end) {
 static void measure(sk_touch *touch, const sk_vec4 *x, bool ways) {
     const sk_spread *spread = &touch->spread;
     const bool held = spread->out_count < spread->count; // somebody may be, and goes the common way
-    const sk_course_values course = {(real)(spread->age + 1) / SK_PANEL_AHEAD, off_course_of(touch), held ? touch->common : (sk_vec3){0, 0, 0}};
+    const sk_course_values course = {(real)(spread->age + 1) / SK_PANEL_AHEAD, off_course_of(touch), held, touch->common};
     measuring job = {touch, x, ways && spread->age < SK_PANEL_AHEAD ? &course : NULL};
     const size_t groups = (spread->count + SK_PANEL_LANES - 1) / SK_PANEL_LANES;
     sk_parallel_pieces(touch->tasks, 0, groups, GROUPS_AT_ONCE, measure_some, &job);
