@@ -455,6 +455,14 @@ static bool gave_up(sk_force *force) {
     return tells;
 }
 
+static const sk_meeting_body *crowded(sk_force *force, const sk_meeting_parts *parts, double *edge, double *thickness) {
+    sk_touch *touch = force->state;
+    if (!touch || touch->told_crowded) return NULL;
+    const sk_meeting_body *body = sk_touch_crowded(touch, parts, ((const sk_contact_params *)force->params)->thickness, edge, thickness);
+    touch->told_crowded = body != NULL;
+    return body;
+}
+
 static const sk_meeting meeting = {
     .begin = {SK_ANY_ISA(begin)},
     .push = {SK_ANY_ISA(sk_touch_push)},
@@ -471,6 +479,7 @@ static const sk_meeting meeting = {
     .touching = sk_touch_touching,
     .ignored = ignored,
     .gave_up = gave_up,
+    .crowded = crowded,
 };
 
 const sk_force_type sk_surface_contact = {

@@ -168,7 +168,8 @@ typedef struct sk_touch {
         size_t count, capacity;
     } order, other_order;         /* of late pairs that are near */
     uint64_t searches, given_up; /* how often it searched, and gave up: */
-    bool told;                   /* the world was told so */
+    bool told;                   /* the world was told so; */
+    bool told_crowded;           /* and of a body that is too thick for its edges */
 } sk_touch;
 
 typedef struct sk_contact_params {
@@ -323,6 +324,11 @@ sk_op_kernel sk_touch_hold;
 bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all);
 /* Looks for those that are lost, on their ways: they are wild from now on. */
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
+
+/* ---- crowded.c ---- */
+
+/* As the force's kind says (sk_meeting): not whether it was told of. */
+const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, const sk_meeting_parts *parts, double usual, double *edge, double *thickness);
 
 /* ---- taut.c ---- */
 

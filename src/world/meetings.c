@@ -95,6 +95,21 @@ static bool list_parts(skein_world *world, size_t rules, meeting_lists *l) {
     return false;
 }
 
+/* Once for a rule. */
+static void tell_of_crowded(skein_world *world, const sk_meeting_parts *parts) {
+    for (size_t i = 0; world->desc.log && i < world->rules.forces.count; i++) {
+        sk_force *force = world->rules.forces.data[i];
+        if (!*force->enabled || !force->type->meeting) continue;
+        double edge, thickness;
+        const sk_meeting_body *body = force->type->meeting->crowded(force, parts, &edge, &thickness);
+        if (body)
+            sk_world_log(world, SKEIN_LOG_WARNING,
+                         "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which takes "
+                         "several times as long as a thickness of %.1g m (its contact.thickness, or this force's thickness)",
+                         force->label, body->name[0] ? body->name : "a body", thickness, edge, 0.25 * edge);
+    }
+}
+
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
     size_t rules = count_those_that_meet(world);
     if (!rules) return SKEIN_OK;
@@ -108,6 +123,7 @@ skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
         if (*force->enabled && force->type->meeting)
             good = force->type->meeting->prepare(force, &world->allocator, &world->particles, &lists.parts, world->isa);
     }
+    if (good) tell_of_crowded(world, &lists.parts);
     release_lists(world, &lists);
     return good ? SKEIN_OK : sk_fail_memory(error, "contact");
 }
