@@ -36,11 +36,13 @@ static sk_quad quad_of(sk_vec3 x) {
     return (sk_quad){x.x, x.y, x.z, 0};
 }
 
-/* The box of a way, whatever share of it is gone, in the frame of courses; of a place, where the way is none. */
+/* The box of a way, whatever share of it is gone, in the frame of courses; of a place, where the way is none. Where all boxes are of
+ * ways, they are in the frame of what all go together, in which they are smaller. */
 static sk_box box_of_way(const sk_touch *touch, size_t v, bool way) {
     sk_vec3 from = sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), none = from, all = from;
     if (way) { // of none of its way it goes what all go together, whether the frame does or not
-        none = sk_sub(sk_add(sk_xyz(touch->stand[v]), touch->common), touch->shift[1]);
+        none = touch->still ? sk_sub(sk_xyz(touch->stand[v]), touch->shift[0])
+                            : sk_sub(sk_add(sk_xyz(touch->stand[v]), touch->common), touch->shift[1]);
         all = sk_add(none, sk_way_left(touch, v));
     }
     sk_quad low = sk_least_quad(quad_of(from), sk_least_quad(quad_of(none), quad_of(all)));
