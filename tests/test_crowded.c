@@ -37,7 +37,7 @@ static void who_is_too_thick_is_told_of_once(void **state) {
     add_contact(world, 0.005);
     steps(world, 2, 1.0 / 60);
     assert_string_equal(text, "contact: fine is 0.005 m thick, and its edges are 0.0057 m long in the mean: all of it is near dozens of "
-                              "others, which takes several times as long as a thickness of 0.001 m (its contact.thickness, or this "
+                              "others, which can take several times as long as a thickness of 0.001 m (its contact.thickness, or this "
                               "force's thickness)\n");
     add_sheet(world, "finer", 0.004, 0, 2); // another skin: once is enough
     steps(world, 2, 1.0 / 60);

@@ -104,7 +104,7 @@ static void tell_of_crowded(skein_world *world, const sk_meeting_parts *parts) {
         const sk_meeting_body *body = force->type->meeting->crowded(force, parts, &edge, &thickness);
         if (body)
             sk_world_log(world, SKEIN_LOG_WARNING,
-                         "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which takes "
+                         "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which can take "
                          "several times as long as a thickness of %.1g m (its contact.thickness, or this force's thickness)",
                          force->label, body->name[0] ? body->name : "a body", thickness, edge, 0.25 * edge);
     }
