@@ -84,7 +84,7 @@ static void it_needs_no_memory_of_its_own(void **state) {
     static const struct {
         size_t fall;
         int side;
-    } some[] = {{0, 40}, {3, 30}, {4, 30}};
+    } some[] = {{0, 40}, {3, 30}, {4, 30}, {3, 26}, {3, 40}, {7, 30}};
     for (size_t k = 0; k < COUNT(some); k++) {
         fall f = falls[some[k].fall];
         f.side = some[k].side;

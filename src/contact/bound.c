@@ -343,7 +343,7 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
         bool lowered = false;
         for (int sort = 0; sort < SK_PAIR_SORTS; sort++) lowered |= settle_pairs(touch, sort, first, least);
         if (!lowered) return true;
-        if (touch->corrects && touch->stand == touch->p) sk_touch_hold_taut(touch); // not after somebody has yielded
+        if (touch->corrects) sk_touch_hold_taut(touch);
         bool lost = take_shares(touch);
         if (!disturb(touch, allocator, &lost) || (lost && !sk_touch_search_ways(touch, allocator)) ||
             !sk_touch_list_closing(touch, allocator, least, false))

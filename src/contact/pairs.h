@@ -53,11 +53,13 @@ typedef struct sk_pair_list {
 typedef struct sk_closing_pair {
     uint32_t entry, corner[4];
 } sk_closing_pair;
-/* One that has too little room where its corners stand, by its sort and key. */
+/* One that may have too little room where its corners stand, by its sort and key; and whether it had when the round began. */
 typedef struct sk_yielding {
     uint64_t key;
-    const sk_closing_pair *pair;
-    int sort;
+    uint32_t corner[4];
+    sk_vec3 normal;
+    uint8_t sort;
+    bool now;
 } sk_yielding;
 typedef struct sk_yielding_list {
     sk_yielding *data;

@@ -11,8 +11,7 @@
  * third of a cell to one side, and the sheet does not stop as if it were a board.
  *
  * Only for methods that correct positions. After an implicit solve, a sheet that folds on rough ground no longer came to rest:
- * what it was held back by, the next solve took for a stretch. And not where somebody has yielded to pins (yield.c): what then
- * followed depended on which pairs had been known before. */
+ * what it was held back by, the next solve took for a stretch. And not at who has yielded to pins, and is stretched by that. */
 #include "contact/touch.h"
 
 /* Vertices whose edges are to be looked at, in a ring. */
@@ -35,6 +34,7 @@ static uint32_t hold_edge(sk_touch *touch, uint32_t a, uint32_t b) {
     const real known = (real)1.0001; // of squares; so that what is lowered is lowered by more than rounding
     real *share = touch->next_share;
     if (share[a] == share[b]) return UINT32_MAX;
+    if (sk_has_yielded(touch, a) || sk_has_yielded(touch, b)) return UINT32_MAX;
     if (share[a] > share[b]) {
         const uint32_t c = a;
         a = b, b = c;

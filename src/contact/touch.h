@@ -122,7 +122,7 @@ typedef struct sk_touch {
     sk_vec4 *way;  /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
     sk_vec4 *stand;   /* where it is after a substep if it goes none of its way, less the same: p, or */
     sk_vec4 *yielded; /* where who is in the way of pins has room (yield.c) */
-    uint8_t *rank;    /* how far from a pin, in pairs; 255: nobody moves it */
+    uint8_t *rank;    /* how far from a pin, in pairs; SK_STANDS: nobody moves it */
     sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
     sk_course *course;
     sk_seen *seen;
@@ -342,6 +342,11 @@ bool sk_touch_is_passed(const sk_touch *touch);
 /* Moves those that pins would pass to where they have room, and begins anew with whole ways from there. Gaps of less than
  * `least` are none. False when there is no memory. */
 bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least);
+enum { SK_STANDS = 255 };
+/* Whether a vertex is pinned or has yielded, in a bound where somebody has. */
+static inline bool sk_has_yielded(const sk_touch *touch, size_t v) {
+    return touch->stand != touch->p && touch->rank[v] != SK_STANDS;
+}
 
 /* ---- crossings.c ---- */
 

@@ -6,14 +6,16 @@
  * normal, until there is room; and so, in turn, do those in the way of these. Only that is moved which must be: all others stay
  * in the frame, so that what slides over a pinned border goes on.
  *
- * Pairs are gone through in the order of their keys, so that no thread counts, and no search that was not needed. */
+ * Pairs are gone through in the order of their keys, so that no thread counts. And it is only those that come near each other on
+ * straight ways to where corners stood when others were last looked for: of these all are known, whatever has gone on before. Who is
+ * pushed by who was pushed is so found in the next search. */
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/tasks.h"
 #include "contact/touch.h"
 
-enum { NOBODY = 255, ROUNDS = 32, SEARCHES = 4 };
+enum { NOBODY = SK_STANDS, ROUNDS = 32, SEARCHES = 8 };
 
 /* A pair where its corners stand, along its normal. */
 typedef struct standing {
@@ -24,9 +26,10 @@ typedef struct standing {
     int first, rank[2]; /* the least of a feature */
 } standing;
 
-static standing standing_of(const sk_touch *touch, const sk_pairs *pairs, int sort, size_t k, const uint32_t *v) {
-    standing s = {.v = v, .first = sort == SK_EDGES ? 2 : 1, .low = SK_REAL_MAX, .high = -SK_REAL_MAX, .rank = {NOBODY, NOBODY}};
-    s.normal = (sk_vec3){pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
+static standing standing_of(const sk_touch *touch, const sk_yielding *pair) {
+    const uint32_t *v = pair->corner;
+    standing s = {.v = v, .first = pair->sort == SK_EDGES ? 2 : 1, .low = SK_REAL_MAX, .high = -SK_REAL_MAX, .rank = {NOBODY, NOBODY}};
+    s.normal = pair->normal;
     const sk_vec3 from = sk_xyz(touch->p[v[0]]);
     real low = SK_REAL_MAX, high = -SK_REAL_MAX;
     for (int c = 0; c < 4; c++) {
@@ -87,10 +90,15 @@ static int compare(const void *a, const void *b) {
     return (one->key > other->key) - (one->key < other->key);
 }
 
-/* All pairs that have too little room when the round begins, in the order of their keys. */
-static bool yield_round(sk_touch *touch, sk_allocator *allocator, bool *moved) {
+static bool is_listed(const sk_yielding *list, size_t count, const sk_yielding *pair) {
+    return count && bsearch(pair, list, count, sizeof *list, compare) != NULL;
+}
+
+/* Adds the pairs that come near each other on straight ways to where their corners stand now, some of which are not where they were. */
+static bool list_pairs(sk_touch *touch, sk_allocator *allocator) {
+    const real near = (real)0.6 * touch->thickness; // more than what they are to have, and less than what all are known of
     sk_yielding_list *list = &touch->yielding;
-    list->count = 0;
+    const size_t before = list->count;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->may_close[sort].count; i++) {
             const sk_closing_pair *one = &touch->may_close[sort].data[i];
@@ -98,20 +106,35 @@ static bool yield_round(sk_touch *touch, sk_allocator *allocator, bool *moved) {
             if (touch->rank[v[0]] == NOBODY && touch->rank[v[1]] == NOBODY && touch->rank[v[2]] == NOBODY && touch->rank[v[3]] == NOBODY) continue;
             if (touch->tangle.any && sk_pair_is_tangled(touch, v, sort)) continue;
             const sk_pairs *pairs = one->entry & 1 ? &touch->late[sort] : &touch->kept[sort];
-            standing s = standing_of(touch, pairs, sort, one->entry / 2, v);
-            if (!has_too_little(touch, &s)) continue;
+            const size_t k = one->entry / 2;
+            const sk_yielding pair = {.key = pairs->key[k],
+                                      .corner = {v[0], v[1], v[2], v[3]},
+                                      .normal = {pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]},
+                                      .sort = (uint8_t)sort};
+            sk_vec3 x[2][4];
+            for (int c = 0; c < 4; c++) x[0][c] = sk_xyz(touch->p[v[c]]), x[1][c] = sk_xyz(touch->stand[v[c]]);
+            if (is_listed(list->data, before, &pair) || !sk_passes[sort][touch->isa]((const sk_vec3(*)[4])x, near)) continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
-            list->data[list->count++] = (sk_yielding){pairs->key[one->entry / 2], one, sort};
+            list->data[list->count++] = pair;
         }
     if (list->count) qsort(list->data, list->count, sizeof *list->data, compare);
-    for (size_t i = 0; i < list->count; i++) {
-        const sk_closing_pair *one = list->data[i].pair;
-        const int sort = list->data[i].sort;
-        const sk_pairs *pairs = one->entry & 1 ? &touch->late[sort] : &touch->kept[sort];
-        standing s = standing_of(touch, pairs, sort, one->entry / 2, one->corner);
-        if (has_too_little(touch, &s)) *moved |= yield_pair(touch, &s);
-    }
     return true;
+}
+
+/* All that have too little room when the round begins, in the order of their keys; whether any has moved. */
+static bool yield_round(sk_touch *touch) {
+    const sk_yielding_list *list = &touch->yielding;
+    bool moved = false;
+    for (size_t i = 0; i < list->count; i++) {
+        const standing s = standing_of(touch, &list->data[i]);
+        list->data[i].now = has_too_little(touch, &s);
+    }
+    for (size_t i = 0; i < list->count; i++) {
+        if (!list->data[i].now) continue;
+        const standing s = standing_of(touch, &list->data[i]);
+        if (has_too_little(touch, &s)) moved |= yield_pair(touch, &s);
+    }
+    return moved;
 }
 
 /* Ways from where they stand now, and who is to be looked for on them; whether that has changed anything. */
@@ -176,19 +199,18 @@ bool sk_touch_is_passed(const sk_touch *touch) {
     return false;
 }
 
-/* Each search finds who is near on these ways, and then all is found out anew: what was known before counts for nothing. */
+/* Each search finds who is near on these ways, and then all is found out anew: what was known before counts for nothing, and so the
+ * first is made where pins alone stand elsewhere. */
 bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least) {
-    bool changed = true;
-    for (int search = 0; search < SEARCHES && changed && !(search && is_hopeless(touch)); search++) {
-        if (!sk_touch_list_closing(touch, allocator, least, true)) return false;
+    touch->yielding.count = 0;
+    begin(touch);
+    bool changed = find_ways(touch);
+    for (int search = 0; search < SEARCHES && (changed || !search) && !(search && is_hopeless(touch)); search++) {
+        if (!sk_touch_search_ways(touch, allocator) || !sk_touch_list_closing(touch, allocator, least, true) || !list_pairs(touch, allocator))
+            return false;
         begin(touch);
-        bool moved = true;
-        for (int round = 0; round < ROUNDS && moved; round++) {
-            moved = false;
-            if (!yield_round(touch, allocator, &moved)) return false;
-        }
+        for (int round = 0; round < ROUNDS && yield_round(touch); round++) {}
         changed = find_ways(touch);
-        if ((changed || !search) && !sk_touch_search_ways(touch, allocator)) return false;
     }
-    return true;
+    return !changed || sk_touch_search_ways(touch, allocator);
 }
