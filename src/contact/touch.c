@@ -432,6 +432,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
     touch->shape = shape;
+    touch->asked_crowded = false;
     touch->found = touch->boxed = touch->followed = touch->remembers = false;
     touch->slots = touch->wild_count = 0;
     forget_pairs(touch); // of a skin without vertices nobody would
@@ -455,11 +456,13 @@ static bool gave_up(sk_force *force) {
     return tells;
 }
 
-static const sk_meeting_body *crowded(sk_force *force, const sk_meeting_parts *parts, double *edge, double *thickness) {
+static const sk_meeting_body *crowded(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,
+                                      double *thickness) {
     sk_touch *touch = force->state;
-    if (!touch || touch->told_crowded) return NULL;
-    const sk_meeting_body *body = sk_touch_crowded(touch, parts, ((const sk_contact_params *)force->params)->thickness, edge, thickness);
-    touch->told_crowded = body != NULL;
+    if (!touch || touch->asked_crowded || touch->told_crowded) return NULL;
+    const sk_contact_params *params = force->params;
+    const sk_meeting_body *body = sk_touch_crowded(touch, allocator, parts, params->thickness, edge, thickness);
+    touch->asked_crowded = true, touch->told_crowded = body != NULL;
     return body;
 }
 

@@ -169,7 +169,7 @@ typedef struct sk_touch {
     } order, other_order;         /* of late pairs that are near */
     uint64_t searches, given_up; /* how often it searched, and gave up: */
     bool told;                   /* the world was told so; */
-    bool told_crowded;           /* and of a body that is too thick for its edges */
+    bool asked_crowded, told_crowded; /* whether a body of this skin is too thick for its edges; and of one */
 } sk_touch;
 
 typedef struct sk_contact_params {
@@ -327,8 +327,9 @@ bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
 
 /* ---- crowded.c ---- */
 
-/* As the force's kind says (sk_meeting): not whether it was told of. */
-const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, const sk_meeting_parts *parts, double usual, double *edge, double *thickness);
+/* The first body that is too thick for its edges, as the force's kind says (sk_meeting); NULL: none, or there is no memory. */
+const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts, double usual,
+                                        double *edge, double *thickness);
 
 /* ---- taut.c ---- */
 

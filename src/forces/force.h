@@ -68,7 +68,8 @@ typedef struct sk_meeting {
     /* Whether there were too many pairs in some substep, so that it skipped all. True once, for the world's warning. */
     bool (*gave_up)(sk_force *force);
     /* A body that is too thick for its edges, as they were built, in the mean: both in m. NULL: none, or it was told of. */
-    const sk_meeting_body *(*crowded)(sk_force *force, const sk_meeting_parts *parts, double *edge, double *thickness);
+    const sk_meeting_body *(*crowded)(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,
+                                      double *thickness);
 } sk_meeting;
 
 typedef struct sk_force_type {

@@ -101,7 +101,7 @@ static void tell_of_crowded(skein_world *world, const sk_meeting_parts *parts) {
         sk_force *force = world->rules.forces.data[i];
         if (!*force->enabled || !force->type->meeting) continue;
         double edge, thickness;
-        const sk_meeting_body *body = force->type->meeting->crowded(force, parts, &edge, &thickness);
+        const sk_meeting_body *body = force->type->meeting->crowded(force, &world->allocator, parts, &edge, &thickness);
         if (body)
             sk_world_log(world, SKEIN_LOG_WARNING,
                          "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which can take "
