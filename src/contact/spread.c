@@ -10,11 +10,11 @@
 typedef struct sk_panel_bounds {
     SK_VECTOR_ALIGNED real least[6][SK_PANEL_LANES], most[6][SK_PANEL_LANES];
 } sk_panel_bounds;
-/* Whether panels are within some distance of where they are expected at some share of their courses, and were, had they gone a
- * common way. */
+/* Whether panels are within some distance of where they are expected at some share of their courses; and, where somebody may be
+ * held back, were so had they gone a common way. */
 typedef struct sk_course_values {
     real share, off;
-    bool held; // somebody may be held back, and goes
+    bool held; // somebody may be, and goes
     sk_vec3 common;
 } sk_course_values;
 /* Of places x of vertices; J is noted. With `course`, returns whether a panel is off its course. */
