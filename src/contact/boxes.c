@@ -60,34 +60,16 @@ static void make_vertex_box(sk_touch *touch, size_t v, bool way) {
     touch->corner_box[v] = box;
 }
 
-static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
-    real x = p[a].x - p[b].x, y = p[a].y - p[b].y, z = p[a].z - p[b].z;
-    return x * x + y * y + z * z;
-}
-
-/* Whether the longest side is eight times as long as it was built. */
-static bool is_torn(const sk_touch *touch, const uint32_t *vertex, int count) {
-    const real most = 8 * 8;
-    real now = 0, built = 0;
-    for (int k = 0; k < count; k++) {
-        uint32_t a = vertex[k], b = vertex[(k + 1) % count];
-        now = sk_max(now, square_between(touch->p, a, b));
-        built = sk_max(built, square_between(touch->skin.built, a, b));
-    }
-    return built > 0 && now > most * built;
-}
-
-/* What has blown up meets nobody: its boxes overlap with all others, and a step would take minutes. */
-static bool has_blown_up(const sk_touch *touch, const sk_leaf *leaf, const sk_box *box) {
-    bool torn = !leaf->triangles && is_torn(touch, touch->skin.edge[leaf->first_edge], 2);
-    for (size_t k = 0; k < leaf->triangles; k++)
-        torn |= is_torn(touch, touch->skin.triangle[leaf->first_triangle + k], 3);
+/* What is nowhere meets nobody. */
+static bool is_nowhere(const sk_box *box) {
+    const real far = (real)1e15;
+    bool any = false;
     for (int end = 0; end < 2; end++)
-        for (int k = 0; k < 3; k++) torn |= !(box->low[end][k] >= (real)-1e15 && box->high[end][k] <= (real)1e15);
-    return torn;
+        for (int k = 0; k < 3; k++) any |= !(box->low[end][k] >= -far && box->high[end][k] <= far);
+    return any;
 }
 
-void sk_touch_leaf_box(sk_touch *touch, size_t i) {
+void sk_touch_leaf_box(sk_touch *touch, size_t i, bool torn) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *leaf = &skin->leaf[i];
     sk_box *box = &touch->leaf_box[i], other;
@@ -98,7 +80,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i) {
         sk_box_widen(box, &other);
     }
     touch->featured[i] = 0;
-    if (!has_blown_up(touch, leaf, box)) return;
+    if (!torn && !is_nowhere(box)) return;
     *box = no_box();
     __atomic_store_n(&touch->tangle.torn, true, __ATOMIC_RELAXED);
 }
@@ -143,7 +125,7 @@ static void make_leaf_boxes(void *data, int thread, size_t begin, size_t end) {
             touch->featured[i] = 0;
             continue;
         }
-        if (touch->moved[i]) sk_touch_leaf_box(touch, i);
+        if (touch->moved[i]) sk_touch_leaf_box(touch, i, touch->torn[i]);
         if (touch->everybody) {
             touch->hot_box[i] = touch->leaf_box[i];
         } else if (touch->anew[i]) {

@@ -143,9 +143,11 @@ static bool keep_pairs(sk_touch *touch, sk_allocator *allocator, size_t p, bool 
         size_t first = calm->start[sort][p], end = calm->start[sort][p + 1], before = late->count;
         if (!sk_pairs_reserve(late, allocator, before + end - first)) return false;
         for (size_t k = first; k < end && calm->key[sort][k] != UINT64_MAX; k++) {
+            const uint64_t key = calm->key[sort][k];
+            if (touch->torn[sk_first_leaf(key)] | touch->torn[sk_second_leaf(key)]) continue;
             size_t to = late->count++;
             for (int c = 0; c < 4; c++) late->corner[c][to] = calm->corner[sort][c][k];
-            late->key[to] = calm->key[sort][k];
+            late->key[to] = key;
             late->thickness[to] = calm->thickness[sort][k];
             late->settled[to] = 0;
         }

@@ -63,7 +63,7 @@ void sk_touch_put_boxes(sk_touch *touch, real part) {
     memset(touch->anew, 1, touch->skin.leaf_count);
     touch->everybody = true;
     for (size_t i = 0; i < touch->skin.leaf_count; i++) {
-        sk_touch_leaf_box(touch, i);
+        sk_touch_leaf_box(touch, i, touch->loaded ? touch->torn[i] : sk_leaf_is_torn(touch, i, touch->p));
         touch->hot_box[i] = touch->leaf_box[i];
     }
     touch->boxed = false;

@@ -110,6 +110,8 @@ typedef struct sk_touch {
     const sk_vec4 *x;      /* while a substep is taken */
     const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
     sk_vec4 *copied;       /* a copy of it */
+    sk_vec4 *first_x;      /* X when the frame began, */
+    size_t first_packed;   /* as it was laid out */
     bool start_is_kept;    /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
@@ -143,6 +145,9 @@ typedef struct sk_touch {
     sk_corner_cells *corner_cells;
     real cells;                /* a metre */
     sk_tree tree;
+    sk_vec4 *at_first;            /* of vertices: where they were when the frame began, if it was asked */
+    uint8_t *torn;                /* leaves that had blown up then, if that is known */
+    bool torn_known, torn_changed;
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
     uint8_t *featured;            /* those whose features have boxes, too (2: are to have them) */
     bool everybody;               /* all features of all leaves are looked for */
@@ -299,9 +304,18 @@ void sk_touch_mark_hot(sk_touch *touch);
 void sk_touch_make_boxes(sk_touch *touch, sk_touch_search_sort sort);
 /* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
 void sk_touch_box_features(sk_touch *touch);
-/* The box of a leaf, and those of its features, from those of vertices. */
-void sk_touch_leaf_box(sk_touch *touch, size_t leaf);
+/* The box of a leaf, which meets nobody if it is torn, and those of its features, from those of vertices. */
+void sk_touch_leaf_box(sk_touch *touch, size_t leaf, bool torn);
 void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
+
+/* ---- torn.c ---- */
+
+/* Whether a leaf has blown up, of places p of vertices. */
+bool sk_leaf_is_torn(const sk_touch *touch, size_t leaf, const sk_vec4 *p);
+/* A frame begins: who is torn then is so in all of it. */
+void sk_torn_begin(sk_touch *touch, size_t packed);
+/* Finds that out (`torn`), unless it is known; if it has changed, all are to be looked for. To be asked before anybody is. */
+void sk_torn_know(sk_touch *touch);
 
 /* ---- thickness.c ---- */
 
@@ -357,7 +371,7 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
 /* Loads the places x of slots, as no step would. */
 void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of);
 /* Boxes of all leaves where they are loaded, each wider by `part`, and of a leaf's features: for lists of those that may
- * meet there. */
+ * meet there. Who is torn meets nobody: in a step, who was when its frame began; else who is where they are. */
 void sk_touch_put_boxes(sk_touch *touch, real part);
 static inline void sk_touch_need_features(sk_touch *touch, size_t leaf) {
     if (!touch->featured[leaf]) sk_touch_feature_boxes(touch, leaf);

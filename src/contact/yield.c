@@ -171,13 +171,24 @@ static void begin(sk_touch *touch) {
     }
 }
 
-/* Where somebody goes so far, or so many pairs may close, all has blown up: it would take seconds a substep. (Cloth of 20 mm a cell that
- * lands with 2 substeps at 7 m/s goes three cells in each, and has 10 to 20 a vertex.) */
+/* Where somebody goes so far, or so many pairs come near each other on straight ways, all has blown up: it would take seconds a
+ * substep. (Of others that may close, how many are known depends on what has gone on before.) */
 static bool is_hopeless(const sk_touch *touch) {
-    const real most_cells = 16;
+    const real most_cells = 16, near = (real)0.6 * touch->thickness;
     if (!(touch->longest < most_cells * touch->skin.longest)) return true;
-    const size_t most_a_vertex = 32;
-    return touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count > most_a_vertex * touch->skin.vertex_count;
+    const size_t most = 4 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
+    size_t count = 0;
+    for (int sort = 0; sort < SK_PAIR_SORTS && known > most; sort++)
+        for (size_t i = 0; i < touch->may_close[sort].count; i++) {
+            const uint32_t *v = touch->may_close[sort].data[i].corner;
+            sk_vec3 x[2][4];
+            for (int c = 0; c < 4; c++) {
+                x[0][c] = sk_xyz(touch->p[v[c]]);
+                x[1][c] = sk_add(sk_xyz(touch->stand[v[c]]), sk_xyz(touch->way[v[c]]));
+            }
+            count += sk_passes[sort][touch->isa]((const sk_vec3(*)[4])x, near);
+        }
+    return count > most;
 }
 
 bool sk_touch_is_passed(const sk_touch *touch) {
@@ -205,9 +216,10 @@ bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least) {
     touch->yielding.count = 0;
     begin(touch);
     bool changed = find_ways(touch);
-    for (int search = 0; search < SEARCHES && (changed || !search) && !(search && is_hopeless(touch)); search++) {
+    for (int search = 0; search < SEARCHES && (changed || !search); search++) {
         if (!sk_touch_search_ways(touch, allocator) || !sk_touch_list_closing(touch, allocator, least, true) || !list_pairs(touch, allocator))
             return false;
+        if (search && is_hopeless(touch)) break;
         begin(touch);
         for (int round = 0; round < ROUNDS && yield_round(touch); round++) {}
         changed = find_ways(touch);
