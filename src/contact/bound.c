@@ -397,7 +397,7 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op) {
     else if (some_out) lost |= sk_spread_follow(touch, SK_REAL_MAX);
     if (!lost && some_out && !sk_pairs_kept(touch) && sk_calm_holds(touch, touch->farthest)) return true;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->lost[v] |= touch->wild[v];
-    sk_torn_know(touch);
+    sk_torn_know(touch, op->packed);
     bool good = sk_calm_follow(touch, run->allocator) && (!lost || sk_touch_search_ways(touch, run->allocator));
     if (good && sk_pairs_kept(touch)) {
         const bool was = touch->tangle.forced;

@@ -51,16 +51,24 @@ static void ask_some(void *data, int thread, size_t begin, size_t end) {
     if (changed) __atomic_store_n(&job->changed, true, __ATOMIC_RELAXED);
 }
 
-void sk_torn_begin(sk_touch *touch, size_t packed) {
-    memcpy(touch->first_x, touch->x, touch->slots * sizeof *touch->first_x);
-    touch->first_packed = packed;
+void sk_torn_begin(sk_touch *touch) {
+    touch->began = NULL; // that is X, as it still is
     touch->torn_known = false;
 }
 
-void sk_torn_know(sk_touch *touch) {
+void sk_torn_keep(sk_touch *touch, size_t packed) {
     if (touch->torn_known) return;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        touch->at_first[v] = sk_load(touch->first_x, touch->first_packed, touch->slot[v]);
+    touch->began_packed = packed;
+    // where all are as the last bound left them, in the frame before, that is kept until the frame ends
+    touch->began = touch->tangle.same && touch->tangle.left_count == touch->slots && touch->alone ? touch->tangle.left : touch->began_copy;
+    if (touch->began == touch->began_copy) memcpy(touch->began_copy, touch->x, touch->slots * sizeof *touch->began_copy);
+}
+
+void sk_torn_know(sk_touch *touch, size_t packed) {
+    if (touch->torn_known) return;
+    const sk_vec4 *first = touch->began ? touch->began : touch->x;
+    if (touch->began) packed = touch->began_packed;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->at_first[v] = sk_load(first, packed, touch->slot[v]);
     tearing job = {.touch = touch};
     sk_parallel_pieces(touch->tasks, 0, touch->skin.leaf_count, LEAVES_AT_ONCE, ask_some, &job);
     touch->torn_known = true;

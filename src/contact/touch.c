@@ -84,7 +84,7 @@ void sk_touch_load(sk_touch *touch, size_t packed) {
 }
 
 static void release_slots(sk_touch *touch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&touch->copied, (void **)&touch->first_x, (void **)&touch->course_block, (void **)&touch->off,
+    void **arrays[] = {(void **)&touch->copied, (void **)&touch->began_copy, (void **)&touch->course_block, (void **)&touch->off,
                        (void **)&touch->vertex_at};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
@@ -108,11 +108,11 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
     if (slots > touch->slot_capacity) {
         release_slots(touch, run->allocator);
         touch->copied = sk_allocate(run->allocator, slots * sizeof *touch->copied);
-        touch->first_x = sk_allocate(run->allocator, slots * sizeof *touch->first_x);
+        touch->began_copy = sk_allocate(run->allocator, slots * sizeof *touch->began_copy);
         touch->course_block = sk_allocate(run->allocator, slots / 16 * sizeof *touch->course_block);
         touch->off = sk_allocate(run->allocator, slots / 16 * sizeof *touch->off);
         touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
-        if (!touch->copied || !touch->first_x || !touch->course_block || !touch->off || !touch->vertex_at) return false;
+        if (!touch->copied || !touch->began_copy || !touch->course_block || !touch->off || !touch->vertex_at) return false;
         touch->slot_capacity = slots;
     }
     touch->slots = slots;
@@ -231,7 +231,7 @@ static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op 
     sk_touch_load(touch, op->packed);
     touch->shift[0] = (sk_vec3){0, 0, 0};
     look_at_panels(touch, run, op);
-    sk_torn_know(touch);
+    sk_torn_know(touch, op->packed);
     if (!known && !sk_calm_look(touch, run->allocator, true)) return false;
     memset(touch->lost, known ? 0 : 1, touch->skin.vertex_count);
     if (!known) return sk_touch_renew(touch, run->allocator, SK_SEARCH_LOST);
@@ -256,7 +256,7 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
     lost |= look_at_panels(touch, run, op) && !all;
-    if (!sk_spread_is_all_out(&touch->spread)) sk_torn_know(touch);
+    if (!sk_spread_is_all_out(&touch->spread)) sk_torn_know(touch, op->packed);
     all |= touch->torn_changed;
     touch->torn_changed = false;
     if (touch->spread.went_out) sk_touch_leave_out(touch);
@@ -316,12 +316,14 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->holds = good && touch->found &&
                    (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) begin_where_all_are(touch, run);
-    if (good && run->iteration == 0) sk_torn_begin(touch, op->packed);
+    if (run->iteration == 0) sk_torn_begin(touch);
     if (run->vector[SK_SUPPORT] && *run->supported) {
         memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
         *run->supported = false;
     }
-    good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
+    good = good && find_tangles(touch, run, op);
+    if (good && run->iteration == 0) sk_torn_keep(touch, op->packed);
+    good = good && find_pairs(touch, run, op, all);
     touch->followed = touch->corrects = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     good = good && list_near(touch, run->allocator);

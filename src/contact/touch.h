@@ -110,8 +110,9 @@ typedef struct sk_touch {
     const sk_vec4 *x;      /* while a substep is taken */
     const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
     sk_vec4 *copied;       /* a copy of it */
-    sk_vec4 *first_x;      /* X when the frame began, */
-    size_t first_packed;   /* as it was laid out */
+    const sk_vec4 *began;  /* X when the frame began, as it was laid out: a copy, or another's; or NULL */
+    size_t began_packed;
+    sk_vec4 *began_copy;   /* the copy */
     bool start_is_kept;    /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
@@ -313,9 +314,11 @@ void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
 /* Whether a leaf has blown up, of places p of vertices. */
 bool sk_leaf_is_torn(const sk_touch *touch, size_t leaf, const sk_vec4 *p);
 /* A frame begins: who is torn then is so in all of it. */
-void sk_torn_begin(sk_touch *touch, size_t packed);
+void sk_torn_begin(sk_touch *touch);
+/* Keeps where all are then, unless it is known who is torn. */
+void sk_torn_keep(sk_touch *touch, size_t packed);
 /* Finds that out (`torn`), unless it is known; if it has changed, all are to be looked for. To be asked before anybody is. */
-void sk_torn_know(sk_touch *touch);
+void sk_torn_know(sk_touch *touch, size_t packed);
 
 /* ---- thickness.c ---- */
 

@@ -176,7 +176,7 @@ static void begin(sk_touch *touch) {
 static bool is_hopeless(const sk_touch *touch) {
     const real most_cells = 16, near = (real)0.6 * touch->thickness;
     if (!(touch->longest < most_cells * touch->skin.longest)) return true;
-    const size_t most = 4 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
+    const size_t most = 8 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
     size_t count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS && known > most; sort++)
         for (size_t i = 0; i < touch->may_close[sort].count; i++) {
