@@ -176,7 +176,7 @@ static void begin(sk_touch *touch) {
 static bool is_hopeless(const sk_touch *touch) {
     const real most_cells = 16, near = (real)0.6 * touch->thickness;
     if (!(touch->longest < most_cells * touch->skin.longest)) return true;
-    const size_t most = 8 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
+    const size_t most = 4 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
     size_t count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS && known > most; sort++)
         for (size_t i = 0; i < touch->may_close[sort].count; i++) {
@@ -184,7 +184,7 @@ static bool is_hopeless(const sk_touch *touch) {
             sk_vec3 x[2][4];
             for (int c = 0; c < 4; c++) {
                 x[0][c] = sk_xyz(touch->p[v[c]]);
-                x[1][c] = sk_add(sk_xyz(touch->stand[v[c]]), sk_xyz(touch->way[v[c]]));
+                x[1][c] = sk_add(sk_xyz(touch->stand[v[c]]), sk_way_left(touch, v[c]));
             }
             count += sk_passes[sort][touch->isa]((const sk_vec3(*)[4])x, near);
         }
