@@ -197,7 +197,7 @@ bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *pa
         find_pieces(skin);
         measure_spacing(skin);
         take_own(skin, parts);
-        good = list_leaves(skin, allocator);
+        good = list_leaves(skin, allocator) && sk_solids_make(skin, allocator, particles, m.vertex_of, parts);
     }
     sk_release(allocator, m.vertex_of);
     sk_release(allocator, m.table);
@@ -219,5 +219,7 @@ void sk_skin_release(sk_skin *skin, sk_allocator *allocator) {
     sk_release(allocator, skin->leaf);
     sk_release(allocator, skin->leaf_start);
     sk_release(allocator, skin->leaf_of);
+    sk_release(allocator, skin->closed);
+    sk_release(allocator, skin->inner);
     *skin = (sk_skin){.vertex_count = 0};
 }

@@ -12,11 +12,19 @@ typedef struct sk_leaf {
     uint8_t vertices, edges, triangles;
 } sk_leaf;
 
+/* A particle within a solid: the user's index, and the piece that encloses it. */
+typedef struct sk_inner {
+    uint32_t particle, piece;
+} sk_inner;
+
 /* What can touch, in numbers of its own. */
 typedef struct sk_skin {
     size_t vertex_count, edge_count, triangle_count, leaf_count;
     uint32_t *particle; /* of vertices: the user's index */
-    uint32_t *piece;    /* of vertices: what hangs together has one number */
+    uint32_t *piece;    /* of vertices: what hangs together has one number, that of one of them */
+    uint8_t *closed;    /* of pieces: its surface is closed */
+    sk_inner *inner;
+    size_t inner_count;
     sk_vec4 *built;     /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
@@ -36,6 +44,10 @@ typedef struct sk_ignored {
     size_t width;
 } sk_ignored;
 
+/* Finds out which pieces are closed, and who is within them; vertex_of: of the user's particles, or UINT32_MAX (solids.c). False when there
+ * is no memory. */
+bool sk_solids_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const uint32_t *vertex_of,
+                    const sk_meeting_parts *parts);
 /* Makes the skin of what a rule acts on: triangles, and edges that are in none, by the user's indices. False when there
  * is no memory: the skin is then empty. */
 bool sk_skin_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const sk_only *only,

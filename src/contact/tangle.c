@@ -105,6 +105,15 @@ static void lead(sk_tangle *tangle, uint32_t v, sk_vec3 way) {
     tangle->lead[v].w++;
 }
 
+/* Of two closed surfaces: what their crossings say of where they are to go as wholes. */
+static void add_whole(sk_tangle *tangle, const sk_skin *skin, uint32_t v, uint32_t other, sk_vec3 way, real share) {
+    const uint32_t piece = skin->piece[v], others = skin->piece[other];
+    if (piece == others || !skin->closed[piece] || !skin->closed[others]) return;
+    sk_accumulate(&tangle->whole[piece], way);
+    tangle->whole[piece].w += share;
+    tangle->wholes[piece]++;
+}
+
 /* Leads both features of a crossing apart by twice a step. */
 static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3],
                           real step) {
@@ -112,8 +121,10 @@ static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_
     inner_end inner = find_inner(tangle, edge, t);
     if (inner == THEIRS) return;
     sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge[inner], t);
-    way = sk_scale(2 * step, way);
     const real share = share_of(touch->p, edge, t);
+    add_whole(tangle, &touch->skin, edge[0], t[0], way, share);
+    add_whole(tangle, &touch->skin, t[0], edge[0], sk_scale(-1, way), 1 - share);
+    way = sk_scale(2 * step, way);
     for (int c = 0; c < 2; c++)
         if (inner == UNKNOWN || (int)inner == c) lead(tangle, edge[c], sk_scale(share, way));
     for (int c = 0; c < 3; c++) lead(tangle, t[c], sk_scale(share - 1, way));
@@ -161,8 +172,10 @@ static bool reserve(sk_touch *touch, sk_allocator *allocator) {
     tangle->part = sk_allocate(allocator, vertices * sizeof *tangle->part);
     tangle->size = sk_allocate(allocator, vertices * sizeof *tangle->size);
     tangle->lead = sk_allocate(allocator, vertices * sizeof *tangle->lead);
+    tangle->whole = sk_allocate(allocator, vertices * sizeof *tangle->whole);
+    tangle->wholes = sk_allocate(allocator, vertices * sizeof *tangle->wholes);
     tangle->marked = sk_allocate(allocator, vertices);
-    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->marked)
+    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->whole && tangle->wholes && tangle->marked)
         tangle->cut = sk_allocate(allocator, touch->skin.edge_count + 1);
     if (!tangle->cut) sk_tangle_release(tangle, allocator);
     return tangle->cut != NULL;
@@ -183,6 +196,26 @@ static void lead_along(sk_touch *touch) {
     }
 }
 
+/* Leads solids that go through others apart, as wholes: deep in each other their crossings lead to all sides, so that they held each
+ * other: of a hundred pairs of cubes, half in each other at first, 27 stayed so. */
+static void lead_wholes(sk_touch *touch, real step) {
+    sk_tangle *tangle = &touch->tangle;
+    const sk_skin *skin = &touch->skin;
+    for (uint32_t p = 0; p < skin->vertex_count; p++) {
+        if (!tangle->wholes[p]) continue;
+        const real share = tangle->whole[p].w / (real)tangle->wholes[p];
+        const sk_vec3 way = sk_scale(2 * share * step, unit(sk_xyz(tangle->whole[p])));
+        tangle->whole[p] = (sk_vec4){way.x, way.y, way.z, 0};
+    }
+    for (uint32_t v = 0; v < skin->vertex_count; v++) {
+        const uint32_t piece = skin->piece[v];
+        if (!tangle->wholes[piece]) continue;
+        sk_vec4 *own = &tangle->lead[v]; // it goes there, too
+        if (!(own->w > 0)) own->w = 1;
+        sk_accumulate(own, sk_scale(own->w, sk_xyz(tangle->whole[piece])));
+    }
+}
+
 /* Edges without faces are left as they are: they may be sewn in. */
 static void lead_all(sk_touch *touch, real step) {
     sk_tangle *tangle = &touch->tangle;
@@ -190,6 +223,8 @@ static void lead_all(sk_touch *touch, real step) {
     memset(tangle->of, 0, skin->vertex_count * sizeof *tangle->of);
     memset(tangle->fine, 0, skin->vertex_count * sizeof *tangle->fine);
     memset(tangle->lead, 0, skin->vertex_count * sizeof *tangle->lead);
+    memset(tangle->whole, 0, skin->vertex_count * sizeof *tangle->whole);
+    memset(tangle->wholes, 0, skin->vertex_count * sizeof *tangle->wholes);
     find_parts(touch);
     bool coarse = false;
     for (size_t i = 0; i < tangle->crossing.count; i++) {
@@ -205,6 +240,7 @@ static void lead_all(sk_touch *touch, real step) {
     }
     // a corner of a few large cells alone gives way, and springs back: with this, two cubes of 5 and 6 cells a side come apart
     if (coarse) lead_along(touch);
+    lead_wholes(touch, step);
 }
 
 static bool is_torn(const sk_tangle *tangle) {
@@ -262,6 +298,12 @@ void sk_tangle_lead(const sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t p
         sk_add_at(x, packed, touch->slot[v], way);
         if (before) sk_add_at(before, packed, touch->slot[v], way);
     }
+    for (size_t i = 0; i < touch->skin.inner_count && tangle->any; i++) { // or springs would bring them along, and speed with it
+        const uint32_t piece = touch->skin.inner[i].piece, slot = touch->inner_slot[i];
+        if (!tangle->wholes[piece] || !(sk_load(x, packed, slot).w > 0)) continue;
+        sk_add_at(x, packed, slot, sk_xyz(tangle->whole[piece]));
+        if (before) sk_add_at(before, packed, slot, sk_xyz(tangle->whole[piece]));
+    }
 }
 
 bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, bool keeps, bool last) {
@@ -281,8 +323,8 @@ bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x,
 }
 
 void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator) {
-    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->marked, tangle->cut,
-                      tangle->crossing.data};
+    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->wholes,
+                      tangle->marked, tangle->cut, tangle->crossing.data};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     *tangle = (sk_tangle){.any = false};
 }

@@ -16,7 +16,8 @@
  * other, nor between what is around them where surfaces are so fine that contact of neighbours does the same. Between all
  * others it is, so that what is pressed together does not fall through itself.
  *
- * Two sheets that cross along a line which divides neither of them are led apart at its ends alone, and may stay.
+ * Two sheets that cross along a line which divides neither of them are led apart at its ends alone, and may stay. Of solids the
+ * crossings' ways together lead out of each other: these go there as wholes, with all that is in them.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
  * the places before a substep alone: a state that was saved and loaded goes on as it would have. */
@@ -54,6 +55,10 @@ typedef struct sk_tangle {
     sk_crossings_at *of, *fine; /* of all crossings, and of those of features that are fine */
     uint32_t *part, *size;      /* the first vertex of its part, and how many are in the part of a first one */
     sk_vec4 *lead;              /* the sum of where its crossings lead it, m; w: how many do */
+    /* by piece of the skin */
+    sk_vec4 *whole;   /* of a solid: where crossings with others lead it, m: first their sum, and in w that of the shares that it goes; */
+    uint32_t *wholes; /* and how many do */
+    /* by vertex again */
     uint8_t *marked;            /* it is not where the last bound left it; it is led */
     uint8_t *cut;               /* of edges: they go through something */
 } sk_tangle;

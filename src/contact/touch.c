@@ -102,6 +102,7 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         same &= touch->slot[v] == slot;
         touch->slot[v] = slot;
     }
+    for (size_t i = 0; i < touch->skin.inner_count; i++) touch->inner_slot[i] = run->slot_of[touch->skin.inner[i].particle];
     if (same) return true;
     touch->found = false;
     touch->slots = 0;
@@ -335,7 +336,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
-enum { VERTEX_ARRAYS = 36 };
+enum { VERTEX_ARRAYS = 37 };
 
 /* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
 static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
@@ -348,7 +349,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
-    LIST(waiting, vertices), LIST(waits, vertices), LIST(at_first, vertices);
+    LIST(waiting, vertices), LIST(waits, vertices), LIST(at_first, vertices), LIST(inner_slot, skin->inner_count + 1);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);

@@ -120,6 +120,7 @@ typedef struct sk_touch {
     size_t slots, slot_capacity;
     /* by vertex */
     uint32_t *slot;
+    uint32_t *inner_slot; /* of those within solids */
     sk_vec4 *p;    /* the place before the substep */
     sk_vec4 *q;    /* after it */
     sk_vec4 *way;  /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
