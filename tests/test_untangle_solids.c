@@ -55,7 +55,7 @@ static int come_apart(const char *method, int substeps, double thickness, double
 
 static void cubes_come_apart(void **state) {
     (void)state;
-    enum { PAIRS = 40 };
+    enum { PAIRS = 24 };
     int longest = 0;
     for (int number = 0; number < PAIRS; number++) {
         const int frames = come_apart("xpbd", 4 + number % 8, 0.005, 0.16, number % 2, number);
@@ -67,13 +67,13 @@ static void cubes_come_apart(void **state) {
 /* Where neighbours in contact would hold what is around a crossing, and are left out. */
 static void fine_cubes_come_apart(void **state) {
     (void)state;
-    enum { PAIRS = 20 };
+    enum { PAIRS = 12 };
     for (int number = 0; number < PAIRS; number++) come_apart("xpbd", 4 + number % 8, 0.012, 0.4, number % 2, number);
 }
 
 static void so_they_do_under_other_methods(void **state) {
     (void)state;
-    enum { PAIRS = 6 };
+    enum { PAIRS = 4 };
     for (int number = 0; number < PAIRS; number++) {
         come_apart("pbd", 8, 0.005, 0.16, number % 2, number);
         come_apart("backward_euler", 4, 0.005, 1, number % 2, number);
