@@ -84,7 +84,7 @@ void sk_touch_load(sk_touch *touch, size_t packed) {
 }
 
 static void release_slots(sk_touch *touch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&touch->copied, (void **)&touch->began_copy, (void **)&touch->course_block, (void **)&touch->off,
+    void **arrays[] = {(void **)&touch->copied, (void **)&touch->course_block, (void **)&touch->off,
                        (void **)&touch->vertex_at};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
@@ -109,11 +109,10 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
     if (slots > touch->slot_capacity) {
         release_slots(touch, run->allocator);
         touch->copied = sk_allocate(run->allocator, slots * sizeof *touch->copied);
-        touch->began_copy = sk_allocate(run->allocator, slots * sizeof *touch->began_copy);
         touch->course_block = sk_allocate(run->allocator, slots / 16 * sizeof *touch->course_block);
         touch->off = sk_allocate(run->allocator, slots / 16 * sizeof *touch->off);
         touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
-        if (!touch->copied || !touch->began_copy || !touch->course_block || !touch->off || !touch->vertex_at) return false;
+        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at) return false;
         touch->slot_capacity = slots;
     }
     touch->slots = slots;
@@ -227,12 +226,20 @@ static bool look_at_panels(sk_touch *touch, const sk_run *run, const sk_op *op) 
     return sk_spread_look(touch, more);
 }
 
+/* Whether others have blown up than when pairs were found, of whom there may be none where all is out. */
+static bool knows_other_torn(sk_touch *touch, const sk_op *op) {
+    if (!sk_spread_is_all_out(&touch->spread)) sk_torn_know(touch, op->packed);
+    const bool changed = touch->torn_changed;
+    touch->torn_changed = false;
+    return changed;
+}
+
 /* In a storm, pairs are those that the last bound has found, on everybody's ways; or of where all are now. */
 static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op *op, bool known) {
     sk_touch_load(touch, op->packed);
     touch->shift[0] = (sk_vec3){0, 0, 0};
     look_at_panels(touch, run, op);
-    sk_torn_know(touch, op->packed);
+    known &= !knows_other_torn(touch, op);
     if (!known && !sk_calm_look(touch, run->allocator, true)) return false;
     memset(touch->lost, known ? 0 : 1, touch->skin.vertex_count);
     if (!known) return sk_touch_renew(touch, run->allocator, SK_SEARCH_LOST);
@@ -257,13 +264,11 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
     lost |= look_at_panels(touch, run, op) && !all;
-    if (!sk_spread_is_all_out(&touch->spread)) sk_torn_know(touch, op->packed);
-    all |= touch->torn_changed;
-    touch->torn_changed = false;
     if (touch->spread.went_out) sk_touch_leave_out(touch);
     touch->spread.went_out = false;
     bool looks = !all && !touch->holds;
     if (all || lost || looks || sk_pairs_kept(touch)) sk_touch_load(touch, op->packed);
+    if (touch->loaded || touch->any_torn) all |= knows_other_torn(touch, op);
     if (looks && !sk_calm_look(touch, run->allocator, false)) return false;
     all |= lost && are_most(touch);
     bool stormy = all && !stormed && is_stormy(touch);
@@ -317,14 +322,11 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->holds = good && touch->found &&
                    (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) begin_where_all_are(touch, run);
-    if (run->iteration == 0) sk_torn_begin(touch);
     if (run->vector[SK_SUPPORT] && *run->supported) {
         memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
         *run->supported = false;
     }
-    good = good && find_tangles(touch, run, op);
-    if (good && run->iteration == 0) sk_torn_keep(touch, op->packed);
-    good = good && find_pairs(touch, run, op, all);
+    good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
     touch->followed = touch->corrects = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     good = good && list_near(touch, run->allocator);
@@ -336,7 +338,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
-enum { VERTEX_ARRAYS = 37 };
+enum { VERTEX_ARRAYS = 38 };
 
 /* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
 static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
@@ -349,12 +351,12 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(lost, vertices), LIST(wild, vertices);
-    LIST(waiting, vertices), LIST(waits, vertices), LIST(at_first, vertices), LIST(inner_slot, skin->inner_count + 1);
+    LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(edge_cells, leaves), LIST(corner_cells, leaves);
-    LIST(torn, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves), LIST(changed, 2 * leaves), LIST(start, leaves);
+    LIST(torn, leaves), LIST(room, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves), LIST(changed, 2 * leaves), LIST(start, leaves);
 #undef LIST
     return n;
 }
@@ -444,7 +446,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->asked_crowded = false;
     touch->found = touch->boxed = touch->followed = touch->remembers = false;
     touch->slots = touch->wild_count = 0;
-    touch->torn_known = touch->torn_changed = false;
+    touch->torn_asked = touch->any_torn = touch->torn_changed = false;
     forget_pairs(touch); // of a skin without vertices nobody would
     const sk_contact_params *params = force->params;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&

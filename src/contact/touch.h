@@ -110,9 +110,6 @@ typedef struct sk_touch {
     const sk_vec4 *x;      /* while a substep is taken */
     const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
     sk_vec4 *copied;       /* a copy of it */
-    const sk_vec4 *began;  /* X when the frame began, as it was laid out: a copy, or another's; or NULL */
-    size_t began_packed;
-    sk_vec4 *began_copy;   /* the copy */
     bool start_is_kept;    /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
@@ -147,9 +144,12 @@ typedef struct sk_touch {
     sk_corner_cells *corner_cells;
     real cells;                /* a metre */
     sk_tree tree;
-    sk_vec4 *at_first;            /* of vertices: where they were when the frame began, if it was asked */
-    uint8_t *torn;                /* leaves that had blown up then, if that is known */
-    bool torn_known, torn_changed;
+    uint8_t *torn;                /* leaves that have blown up (torn.c), */
+    real *room;                   /* and by how much, m, they had not when it was asked, which was, if ever, */
+    sk_vec4 *asked_at;            /* with vertices there */
+    real torn_room;               /* the least */
+    uint64_t torn_clock;          /* the substep that it is known of */
+    bool torn_asked, any_torn, torn_changed;
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
     uint8_t *featured;            /* those whose features have boxes, too (2: are to have them) */
     bool everybody;               /* all features of all leaves are looked for */
@@ -314,11 +314,8 @@ void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
 
 /* Whether a leaf has blown up, of places p of vertices. */
 bool sk_leaf_is_torn(const sk_touch *touch, size_t leaf, const sk_vec4 *p);
-/* A frame begins: who is torn then is so in all of it. */
-void sk_torn_begin(sk_touch *touch);
-/* Keeps where all are then, unless it is known who is torn. */
-void sk_torn_keep(sk_touch *touch, size_t packed);
-/* Finds that out (`torn`), unless it is known; if it has changed, all are to be looked for. To be asked before anybody is. */
+/* Finds out which are before this substep (`torn`), unless it is known; if that has changed, all are to be looked for. To be asked before
+ * anybody is, and, where somebody was torn, in each substep. */
 void sk_torn_know(sk_touch *touch, size_t packed);
 
 /* ---- thickness.c ---- */
@@ -375,7 +372,7 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
 /* Loads the places x of slots, as no step would. */
 void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_of);
 /* Boxes of all leaves where they are loaded, each wider by `part`, and of a leaf's features: for lists of those that may
- * meet there. Who is torn meets nobody: in a step, who was when its frame began; else who is where they are. */
+ * meet there. Who is torn meets nobody: in a step, who was before it; else who is where they are. */
 void sk_touch_put_boxes(sk_touch *touch, real part);
 static inline void sk_touch_need_features(sk_touch *touch, size_t leaf) {
     if (!touch->featured[leaf]) sk_touch_feature_boxes(touch, leaf);
