@@ -7,7 +7,7 @@
 #include <time.h>
 
 #include "bench/worlds.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 #include "world/world.h"
 
 /* ---- a chained hash: each box in every cell that it touches, chains of entries, pairs looked at in their first cell ---- */

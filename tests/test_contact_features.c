@@ -1,7 +1,7 @@
 /* Features of leaves that are compared in cells, against their boxes one by one: none that may meet is left out, for
  * any instruction set, however wide a leaf is and wherever it lies, and hardly any come in vain. */
 #include "base/isa.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 #include "helpers.h"
 
 enum { LEAVES = 48, MOST = LEAVES * SK_LEAVES_PAIRS };

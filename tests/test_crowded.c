@@ -1,4 +1,4 @@
-/* The warning of bodies that are too thick in contact for their edges (src/contact/crowded.c). */
+/* The warning of bodies that are too thick in contact for their edges (src/contact/make/crowded.c). */
 #include "helpers.h"
 
 static void note(void *user, skein_log_level level, const char *message) {

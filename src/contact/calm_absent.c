@@ -1,5 +1,5 @@
 /* No patch is ever calm, where what the library takes counts more than time: every pair around a leaf is searched for, with
- * the same bits. Instead of calm.c and calm_make.c in WebAssembly, which pages wait for. */
+ * the same bits. Instead of calm.c and make/calm.c in WebAssembly, which pages wait for. */
 #include "contact/touch.h"
 
 bool sk_calm_make(sk_touch *touch, sk_allocator *allocator) {

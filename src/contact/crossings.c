@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 /* Six times the volume of a tetrahedron, in double: places are differences of reals, so its sign is right but for what
  * is all but flat. */

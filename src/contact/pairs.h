@@ -123,13 +123,24 @@ static inline size_t sk_first_of(uint64_t found) {
     return (size_t)__builtin_ctzll(found) / 8;
 }
 
+/* Keys of pairs say of which leaves they are, in order; the key of two leaves' first pair. */
+static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
+    return (uint64_t)a << 36 | (uint64_t)b << 8;
+}
+static inline size_t sk_first_leaf(uint64_t key) {
+    return (size_t)(key >> 36);
+}
+static inline size_t sk_second_leaf(uint64_t key) {
+    return (size_t)(key >> 8 & 0xfffffff);
+}
+
 /* ---- closest.c ---- */
 
 /* By sort of pairs. */
 extern sk_closest_kernel *const sk_closest[SK_PAIR_SORTS][SK_ISA_COUNT];
 /* passing.c */
 extern sk_passes_kernel *const sk_passes[SK_PAIR_SORTS][SK_ISA_COUNT];
-/* nearing.c */
+/* search/nearing.c */
 extern sk_closing_kernel *const sk_closing[SK_PAIR_SORTS][SK_ISA_COUNT];
 extern sk_nearing_kernel *const sk_nearing[SK_PAIR_SORTS][SK_ISA_COUNT];
 

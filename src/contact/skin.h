@@ -36,7 +36,7 @@ typedef struct sk_skin {
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
 
-/* Bodies of which some pairs do not meet (ignored.c). */
+/* Bodies of which some pairs do not meet (make/ignored.c). */
 typedef struct sk_ignored {
     bool any;
     uint32_t *of_leaf; /* of leaves: the number that their body has, and whoever is called the same by the text; 0: it is not named */
@@ -44,7 +44,7 @@ typedef struct sk_ignored {
     size_t width;
 } sk_ignored;
 
-/* Finds out which pieces are closed, and who is within them; vertex_of: of the user's particles, or UINT32_MAX (solids.c). False when there
+/* Finds out which pieces are closed, and who is within them; vertex_of: of the user's particles, or UINT32_MAX (make/solids.c). False when there
  * is no memory. */
 bool sk_solids_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *particles, const uint32_t *vertex_of,
                     const sk_meeting_parts *parts);
@@ -59,14 +59,14 @@ static inline size_t sk_edge_place(uint32_t a, uint32_t b, size_t mask) {
     return ((uint64_t)a * 0x9e3779b97f4a7c15u ^ (uint64_t)b * 0xc2b2ae3d27d4eb4fu) >> 20 & mask;
 }
 
-/* ---- leaves.c ---- */
+/* ---- make/leaves.c ---- */
 
 /* Finds the triangle with which each of those that are `here` is one leaf, or UINT32_MAX, and the order of all. False when there is
  * no memory. */
 bool sk_leaves_deal(uint32_t *partner, uint32_t *order, sk_allocator *allocator, const sk_particles *particles,
                     const sk_meeting_parts *parts, const uint8_t *here);
 
-/* ---- ignored.c ---- */
+/* ---- make/ignored.c ---- */
 
 /* Reads the pairs of names, of bodies and of groups, and numbers the leaves of the bodies that have them. False when there is
  * no memory. */

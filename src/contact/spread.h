@@ -16,7 +16,7 @@
 #ifndef SK_CONTACT_SPREAD_H
 #define SK_CONTACT_SPREAD_H
 
-#include "contact/boxes.h"
+#include "contact/search/boxes.h"
 
 enum { SK_PANEL_LEAVES = 16, SK_PANEL_LANES = 16, SK_PANEL_AHEAD = 16 };
 

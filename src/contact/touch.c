@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/tasks.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 static const skein_field fields[] = {
     SK_REAL(sk_contact_params, thickness, "thickness", "m", 0.005, 1e-6, 1e3,

@@ -18,7 +18,7 @@
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
 
-#include "contact/boxes.h"
+#include "contact/search/boxes.h"
 #include "contact/calm.h"
 #include "contact/pairs.h"
 #include "contact/press.h"
@@ -236,79 +236,9 @@ static inline size_t sk_pairs_kept(const sk_touch *touch) {
     return count;
 }
 
-/* ---- cells.c ---- */
-
-real sk_cells_a_metre(const sk_touch *touch);
-/* The cells of a leaf, from its boxes. */
-void sk_touch_leaf_cells(sk_touch *touch, size_t leaf);
-
-/* ---- features.c ---- */
-
-/* Lists the pairs of features of leaf a and each of its partners whose boxes may meet and of which one is looked for, in
- * order; there is room for SK_LEAVES_PAIRS a partner. */
-enum { SK_LEAVES_PAIRS = 64 }; /* of two leaves: 2 x 4 x 2 corners, 5 x 5 edges */
-typedef void sk_features_kernel(const struct sk_touch *touch, sk_pairs *fresh, uint32_t a, const uint32_t *partner,
-                                size_t count);
-extern sk_features_kernel *const sk_features[SK_PAIR_SORTS][SK_ISA_COUNT];
-/* The key of their first pair. */
-static inline uint64_t sk_leaves_key(uint32_t a, uint32_t b) {
-    return (uint64_t)a << 36 | (uint64_t)b << 8;
-}
-static inline size_t sk_first_leaf(uint64_t key) {
-    return (size_t)(key >> 36);
-}
-static inline size_t sk_second_leaf(uint64_t key) {
-    return (size_t)(key >> 8 & 0xfffffff);
-}
-
-/* ---- partners.c ---- */
-
-/* Lists leaves whose boxes may meet, each two once, of which one at least is looked for `anew`: `first`, and `partner`, the
- * same leaf or a later one; in order, but none where they are more than `most`. Those of calm patches if asked for. */
-bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many);
-/* Has each part's work done on a thread of its own: `work` looks at what is next in its part of [0, count) until there is
- * none or no room, for which `grow` is then asked. Parts follow each other in order; or each takes so many at a time, whoever
- * is done. False when there is no memory. */
-typedef struct sk_parts_job {
-    sk_touch *touch;
-    int sort, search;
-    size_t most;
-    bool calm_too;
-    size_t at_once; /* 0: in order */
-    void (*work)(const struct sk_parts_job *job, sk_search_part *part);
-    bool (*grow)(sk_search_part *part, sk_allocator *allocator);
-} sk_parts_job;
-bool sk_touch_work(const sk_parts_job *job, sk_allocator *allocator, size_t count, size_t least);
-void sk_touch_release_parts(sk_touch *touch, sk_allocator *allocator);
 /* ---- course.c ---- */
 
 extern sk_course_kernel *const sk_course_off[SK_ISA_COUNT];
-
-/* ---- search.c ---- */
-
-/* What is looked for: pairs of all vertices, or of those that are lost, for as long as all keep to their courses; or of
- * those that are lost for this one substep, on all shares of the ways that all go, and where these lead. */
-typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
-/* False when there is no memory. */
-bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
-/* Thicknesses: nearest points of edges that are all but parallel are no better known. */
-#define SK_SEARCH_ROUNDING ((real)0.002)
-/* The way that a vertex may still go. */
-static inline sk_vec3 sk_way_left(const sk_touch *touch, size_t v) {
-    return sk_scale(touch->share[v], sk_xyz(touch->way[v]));
-}
-
-/* ---- boxes.c ---- */
-
-/* Marks vertices that are lost, edges and triangles that have one, and the leaves of all these. */
-void sk_touch_mark_hot(sk_touch *touch);
-/* Boxes of all vertices and leaves, or of those that are new. */
-void sk_touch_make_boxes(sk_touch *touch, sk_touch_search_sort sort);
-/* Of features, boxes are made where their leaf meets another: few do, of a surface that touches nothing. */
-void sk_touch_box_features(sk_touch *touch);
-/* The box of a leaf, which meets nobody if it is torn, and those of its features, from those of vertices. */
-void sk_touch_leaf_box(sk_touch *touch, size_t leaf, bool torn);
-void sk_touch_feature_boxes(sk_touch *touch, size_t leaf);
 
 /* ---- torn.c ---- */
 
@@ -340,7 +270,7 @@ bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least,
 /* Looks for those that are lost, on their ways: they are wild from now on. */
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
 
-/* ---- crowded.c ---- */
+/* ---- make/crowded.c ---- */
 
 /* The first body that is too thick for its edges, as the force's kind says (sk_meeting); NULL: none, or there is no memory. */
 const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts, double usual,
@@ -374,9 +304,6 @@ void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
 /* Boxes of all leaves where they are loaded, each wider by `part`, and of a leaf's features: for lists of those that may
  * meet there. Who is torn meets nobody: in a step, who was before it; else who is where they are. */
 void sk_touch_put_boxes(sk_touch *touch, real part);
-static inline void sk_touch_need_features(sk_touch *touch, size_t leaf) {
-    if (!touch->featured[leaf]) sk_touch_feature_boxes(touch, leaf);
-}
 /* Lists those edges that go through a triangle where they are loaded, in the order of leaves; with `of`, if it is known
  * that of others none does, those around vertices that have it set. False when there is no memory. */
 bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list);
@@ -398,6 +325,9 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 void sk_touch_copy_start(sk_touch *touch);
 /* Loads the places before the substep, unless they are. */
 void sk_touch_load(sk_touch *touch, size_t packed);
+/* What is looked for: pairs of all vertices, or of those that are lost, for as long as all keep to their courses; or of
+ * those that are lost for this one substep, on all shares of the ways that all go, and where these lead. */
+typedef enum sk_touch_search_sort { SK_SEARCH_ALL, SK_SEARCH_LOST, SK_SEARCH_WAYS } sk_touch_search_sort;
 /* Looks for lost vertices; then, but of ways, looks at all pairs that are kept, at p. */
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search);
 /* After a bound that more follows in the same substep: what is near is listed anew, for it has let go of some pairs, and
@@ -414,6 +344,10 @@ void sk_touch_put_course(sk_touch *touch, size_t v, bool wild);
 /* Where a vertex is expected at a time. */
 static inline sk_vec3 sk_expected(const sk_course *course, real time) {
     return sk_add(course->from, sk_scale(time, course->step));
+}
+/* The way that a vertex may still go. */
+static inline sk_vec3 sk_way_left(const sk_touch *touch, size_t v) {
+    return sk_scale(touch->share[v], sk_xyz(touch->way[v]));
 }
 /* The weights of a pair's corners at its nearest points: those of the second feature are negative. */
 static inline void sk_weights_of(const sk_pairs *pairs, int sort, size_t k, real weight[4]) {

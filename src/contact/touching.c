@@ -1,6 +1,6 @@
 /* Which features touch now: for programs, and for whoever draws. Found by the places alone, so that it is the same before a step
  * and after it, however long the world has been there. */
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 enum { SOME = 64 };
 

@@ -1,6 +1,6 @@
-/* What the lists of panels are made with (spread_make.c): sheets on their planes, panels of leaves, and blocks of panels. */
-#ifndef SK_CONTACT_SPREAD_MAKE_H
-#define SK_CONTACT_SPREAD_MAKE_H
+/* What the lists of panels are made with (spread.c): sheets on their planes, panels of leaves, and blocks of panels. */
+#ifndef SK_CONTACT_MAKE_SPREAD_H
+#define SK_CONTACT_MAKE_SPREAD_H
 
 #include "contact/touch.h"
 

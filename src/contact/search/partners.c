@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/tasks.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 /* ---- boxes of the tree ---- */
 

@@ -7,7 +7,7 @@
  * Leaves are in the order of their triangles; where these lie about in a body's file anyhow they follow a curve. So what a leaf, its
  * neighbours and their vertices need is near in memory. (A mesh of 26,002 vertices that falls into a heap took 30 s with leaves of
  * one triangle, 20 with pairs, 15 in this order; a grid of 100 x 100 along a curve 16 for 13 along its rows.) */
-#include "contact/curve.h"
+#include "contact/make/curve.h"
 #include "contact/skin.h"
 
 #include <math.h>

@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/spread_make.h"
+#include "contact/make/spread.h"
 
 /* How many triangles an edge has. */
 static int faces_of(const sk_skin *skin, const uint32_t edge[2]) {

@@ -101,7 +101,7 @@ static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
 extern sk_tree_blocks_kernel *const sk_tree_blocks[SK_ISA_COUNT];
 extern sk_tree_hits_kernel *const sk_tree_hits[SK_ISA_COUNT];
 
-/* ---- tree_make.c ---- */
+/* ---- make/tree.c ---- */
 
 /* Room for a tree of so many, each in its own slot. False when there is no memory. */
 bool sk_tree_reserve(sk_tree *tree, sk_allocator *allocator, size_t count);

@@ -2,7 +2,7 @@
 #include <string.h>
 
 #include "base/tasks.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 enum { AT_ONCE = 1024 }; /* vertices or leaves that a thread takes at a time */
 

@@ -1,5 +1,5 @@
 /* A curve through space, and sorting along it. */
-#include "contact/curve.h"
+#include "contact/make/curve.h"
 
 #include <string.h>
 

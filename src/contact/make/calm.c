@@ -2,7 +2,7 @@
  * vertices of all these. Made with the skin, once. */
 #include <string.h>
 
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 enum { MOST_AROUND = 64 }; /* leaves: around a vertex with many more, all would be listed with all */
 
@@ -98,7 +98,7 @@ static void put_edges(listing *list, uint64_t key, const sk_leaf *a, const sk_le
         }
 }
 
-/* The pairs of a leaf with those around it that are no earlier ones: as features.c lists them. */
+/* The pairs of a leaf with those around it that are no earlier ones: as search/features.c lists them. */
 static void put_leaf(listing *list, const sk_ignored *ignored, uint32_t a) {
     const sk_skin *skin = list->skin;
     for (uint32_t i = list->calm->ring_start[a]; i < list->calm->ring_start[a + 1]; i++) {

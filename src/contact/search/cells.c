@@ -1,6 +1,6 @@
 /* Boxes of leaves' features in cells (features.c). Any number goes to its cell by one function that never falls, so
  * that boxes that meet do so in cells, too: no rounding has to be looked after. */
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 typedef int32_t cells_quad __attribute__((vector_size(16)));
 

@@ -2,13 +2,13 @@
  * compared with one, or with several, at once, in cells (cells.c); how many of them meet is nowhere branched on one by
  * one. */
 #include "base/kernels.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 #define SK_UNIT features
 SK_KERNELS(sk_features_kernel, corners);
 SK_KERNELS(sk_features_kernel, edges);
 
 #ifdef SK_ISA
-#include "contact/bits.h"
+#include "contact/search/bits.h"
 
 enum {
     AHEAD = 6,                   /* leaves: the boxes of so many more are on their way from memory */

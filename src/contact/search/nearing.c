@@ -12,7 +12,7 @@ SK_KERNELS(sk_nearing_kernel, edges_nearing);
 
 #ifdef SK_ISA
 #include "contact/lanes.h"
-#include "contact/bits.h"
+#include "contact/search/bits.h"
 #include "contact/closest.h"
 
 SK_INLINE const sk_wide *part_of(const real *reals, size_t k) {

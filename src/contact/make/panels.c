@@ -2,7 +2,7 @@
 #include <math.h>
 #include <string.h>
 
-#include "contact/spread_make.h"
+#include "contact/make/spread.h"
 
 static void measure_leaves(making *m) {
     const sk_skin *skin = m->skin;

@@ -8,7 +8,7 @@
 #include <string.h>
 
 #include "base/tasks.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 /* What is nearer than this share of its way may close in a substep: a little more than 1 / (1 - SK_LEFT_OVER). */
 static const real closing_share = (real)1.13;

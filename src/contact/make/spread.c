@@ -1,6 +1,6 @@
 /* Lists of panels, made with the skin, once; nothing where no sheet was built flat. Here is what kernels walk along, and room
  * for it all. */
-#include "contact/spread_make.h"
+#include "contact/make/spread.h"
 
 /* ---- rows ---- */
 

@@ -3,7 +3,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "contact/spread_make.h"
+#include "contact/make/spread.h"
 
 static int compare_beginnings(const void *a, const void *b) {
     const beginning *one = a, *two = b;

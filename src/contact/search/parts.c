@@ -3,7 +3,7 @@
 
 #include "base/float_mode.h"
 #include "base/tasks.h"
-#include "contact/touch.h"
+#include "contact/search/search.h"
 
 typedef struct working {
     const sk_parts_job *job;
