@@ -16,8 +16,9 @@
  * other, nor between what is around them where surfaces are so fine that contact of neighbours does the same. Between all
  * others it is, so that what is pressed together does not fall through itself.
  *
- * Two sheets that cross along a line which divides neither of them are led apart at its ends alone, and may stay. Of solids the
- * crossings' ways together lead out of each other: these go there as wholes, with all that is in them.
+ * Neighbours hold back who is led alone. So what crossings of two pieces say together leads these as wholes, too: solids out of each
+ * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
+ * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
  * the places before a substep alone: a state that was saved and loaded goes on as it would have. */
@@ -42,6 +43,15 @@ typedef struct sk_crossings_at {
     uint64_t edges, triangles;
 } sk_crossings_at;
 
+/* What is led as a whole: a solid, a sheet around where it is gone through, or the part of a sheet that is in a solid. */
+typedef struct sk_whole {
+    sk_vec3 way;       /* first the sum of what crossings say, then where it is led, m */
+    real share;        /* the sum of how much of the way is its own, */
+    uint32_t count;    /* of so many crossings */
+    bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
+    sk_vec3 low, high; /* between these, as it was built */
+} sk_whole;
+
 typedef struct sk_tangle {
     bool any;      /* something is led apart in this substep */
     bool same;     /* all are where the last bound has left them */
@@ -55,10 +65,7 @@ typedef struct sk_tangle {
     sk_crossings_at *of, *fine; /* of all crossings, and of those of features that are fine */
     uint32_t *part, *size;      /* the first vertex of its part, and how many are in the part of a first one */
     sk_vec4 *lead;              /* the sum of where its crossings lead it, m; w: how many do */
-    /* by piece of the skin */
-    sk_vec4 *whole;   /* of a solid: where crossings with others lead it, m: first their sum, and in w that of the shares that it goes; */
-    uint32_t *wholes; /* and how many do */
-    /* by vertex again */
+    sk_whole *whole;            /* of the pieces of the skin, and behind these of parts */
     uint8_t *marked;            /* it is not where the last bound left it; it is led */
     uint8_t *cut;               /* of edges: they go through something */
 } sk_tangle;
