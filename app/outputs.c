@@ -432,8 +432,7 @@ bool app_outputs_finish(app_outputs *outputs, void (*wrote)(void *user, const ch
         book.good &= complete;
     }
 #endif
-    memset(outputs->made, 0, sizeof outputs->made); // the folders stay
-    app_outputs_abandon(outputs);
+    app_outputs_leave(outputs);
     return book.good;
 }
 
@@ -481,8 +480,7 @@ void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char
 #ifdef SKEIN_RENDER
     keep_film(outputs, &book);
 #endif
-    memset(outputs->made, 0, sizeof outputs->made); // the folders stay
-    app_outputs_abandon(outputs);
+    app_outputs_leave(outputs);
 }
 
 void app_outputs_abandon(app_outputs *outputs) {
@@ -500,4 +498,9 @@ void app_outputs_abandon(app_outputs *outputs) {
     free(outputs->names);
     free(outputs->positions);
     free(outputs);
+}
+
+void app_outputs_leave(app_outputs *outputs) {
+    if (outputs) memset(outputs->made, 0, sizeof outputs->made);
+    app_outputs_abandon(outputs);
 }

@@ -29,5 +29,7 @@ void app_outputs_keep(app_outputs *outputs, void (*wrote)(void *user, const char
 const char *app_outputs_failure(const app_outputs *outputs);
 /* Leaves all as it was: no files, and no folders that were made for them. NULL is allowed. */
 void app_outputs_abandon(app_outputs *outputs);
+/* The same, but the folders stay: others are to write there. */
+void app_outputs_leave(app_outputs *outputs);
 
 #endif

@@ -119,7 +119,7 @@ static void note_file(void *user, const char *path) {
 
 /* A run that failed keeps the frames before that, if there are any, and says so. */
 static void keep_frames(app_report *r, app_outputs *outputs, const char *folder, const app_progress *p) {
-    if (!outputs || !r->frames) {
+    if (!outputs || (!r->frames && !p->failure[0])) {
         app_outputs_abandon(outputs);
         return;
     }
@@ -128,7 +128,8 @@ static void keep_frames(app_report *r, app_outputs *outputs, const char *folder,
                                                      : app_outputs_failure(outputs);
     snprintf(r->failure, sizeof r->failure, "%s", why[0] ? why : "the state could not be measured");
     skein_world_statistics(r->loaded->world, &r->statistics); // as it is, whatever that is
-    app_outputs_keep(outputs, note_file, r);
+    if (r->frames) app_outputs_keep(outputs, note_file, r);
+    else app_outputs_leave(outputs); // there is no frame, but a report
     bool kept = json_array_size(r->files) > 0;
     char parent[APP_FOLDER_SIZE];
     const char *place = app_outputs_file(folder, parent) ? parent : folder;

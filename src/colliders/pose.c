@@ -120,6 +120,7 @@ sk_pose sk_collider_pose_unled(const sk_collider *collider, double time) {
     if (!travel->noted || !travel->changed || collider->led) return pose;
     pose.position = sk_v3_of(travel->position); // it stands there until the next step
     for (int i = 0; i < 9; i++) pose.rotation[i] = (real)travel->rotation[i];
+    if (collider->type->axis) pose.axis = sk_v3_of(travel->direction);
     return pose;
 }
 

@@ -204,6 +204,23 @@ static void turn_out(sk_trimesh *m) {
     m->turned = true;
 }
 
+/* Whether a mesh with a border is a sheet, and not a body with holes: the areas of a body's faces, as vectors, sum up to next to nothing.
+ * (Of a flat sheet they are all there is, of half a sphere half, of a cube without its lid a fifth. By the winding number, the hollow
+ * side of a sheet would be inside or outside as its faces happen to look.) */
+static bool is_sheet(const sk_trimesh *m) {
+    const double most = 0.15;
+    double sum[3] = {0, 0, 0}, all = 0;
+    for (size_t t = 0; t < m->triangle_count && m->open_edges; t++) {
+        double p[3][3], ab[3], ac[3];
+        for (int k = 0; k < 3; k++) to_double(m->place[m->corner[t][k]], p[k]);
+        for (int k = 0; k < 3; k++) ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
+        const double area[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
+        for (int k = 0; k < 3; k++) sum[k] += area[k];
+        all += sqrt(dot3(area, area));
+    }
+    return sqrt(dot3(sum, sum)) > most * all;
+}
+
 /* ---- life ---- */
 
 static bool make_room(sk_trimesh *m, size_t triangles) {
@@ -230,6 +247,7 @@ static skein_status fill(sk_trimesh *m, const skein_mesh *mesh, skein_error *err
     if (!sk_trimesh_plant(m) || !join_edges(m)) return sk_fail_memory(error, "the mesh");
     m->closed = !m->open_edges && !m->torn_edges;
     if (m->closed && volume_of(m) < 0) turn_out(m);
+    m->sheet = is_sheet(m);
     m->dipole = sk_allocate(m->allocator, m->node_count * sizeof *m->dipole);
     if (!m->dipole) return sk_fail_memory(error, "the mesh");
     shape(m);
@@ -365,7 +383,7 @@ void sk_trimesh_look(const sk_trimesh *m, uint32_t triangle, const real p[3], sk
     nearest(m, triangle, ap, weight, n);
     for (int k = 0; k < 3; k++) away[k] = ap[k] - weight[0] * (double)f->ab[k] - weight[1] * (double)f->ac[k];
     double d = sqrt(dot3(away, away)), side = dot3(away, n);
-    bool inside = m->closed ? side < 0 : sk_trimesh_winding(m, at) > 0.5;
+    bool inside = m->closed ? side < 0 : !m->sheet && sk_trimesh_winding(m, at) > 0.5;
     // on the surface itself its own normal counts, on the side of an open one that p is on
     double sign = inside ? -1 : 1, tiny = (sizeof(real) == 4 ? 1e-6 : 1e-14) * size;
     bool on = d <= tiny;

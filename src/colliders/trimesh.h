@@ -8,7 +8,7 @@
  *
  * Which side a point is on: of a mesh that is closed, by the pseudo-normal of what is nearest, a face, an edge or a corner
  * (Baerentzen and Aanaes 2005); of any other by the generalized winding number, far triangles by dipoles (Barill and others
- * 2018). An open sheet has no inside: it is solid from both sides. */
+ * 2018). An open sheet (a dish, a ground, a crate without its lid) has no inside: it is solid from both sides. */
 #ifndef SK_COLLIDERS_TRIMESH_H
 #define SK_COLLIDERS_TRIMESH_H
 
@@ -57,6 +57,7 @@ typedef struct sk_trimesh {
     real cell_low[3], per_cell[3], cell_span; /* the diagonal of one */
     real slack;        /* squared m: rounding may make a triangle nearer by so much than its box */
     bool closed, turned, moves;
+    bool sheet;        /* so open that it has no inside */
     size_t open_edges, torn_edges, thin; /* edges of one triangle; of more than two, or of two that disagree; faces left out */
 } sk_trimesh;
 

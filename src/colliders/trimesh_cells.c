@@ -113,6 +113,7 @@ sk_trimesh_side sk_trimesh_side_of(const sk_trimesh *m, const real p[3], real wi
         if (what != NEAR) return what == OUTSIDE ? SK_OUTSIDE : SK_INSIDE;
         if (within < m->cell_span) return SK_UNDECIDED;
     }
+    if (m->sheet) return SK_OUTSIDE;
     double winding = sk_trimesh_winding(m, (const double[3]){(double)p[0], (double)p[1], (double)p[2]});
     return winding > 0.5 ? SK_INSIDE : SK_OUTSIDE;
 }

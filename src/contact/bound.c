@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/tasks.h"
+#include "base/union_find.h"
 #include "contact/touch.h"
 #include "plan/solve.h"
 
@@ -353,30 +354,48 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
 
 /* ---- the op ---- */
 
-/* Which pieces of the skin have somebody who is pinned, or has yielded to a pin; returns whether anybody is held back. */
-static bool find_pinned(sk_touch *touch) {
-    bool any = false;
-    memset(touch->pinned, 0, touch->skin.vertex_count);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        any |= touch->share[v] < 1;
-        if (!(touch->inverse[v] > 0) || sk_has_yielded(touch, v)) touch->pinned[touch->skin.piece[v]] = 1;
+/* Those who hold each other back: corners of a pair that is divided, and ends of an edge that is held taut. */
+static void find_held(sk_touch *touch) {
+    for (uint32_t v = 0; v < touch->skin.vertex_count; v++) touch->held_with[v] = v;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (size_t i = 0; i < touch->may_close[sort].count; i++) {
+            const sk_closing_pair *pair = &touch->may_close[sort].data[i];
+            const uint32_t *v = pair->corner;
+            if (!sk_pairs_of(touch, sort, pair->entry)->settled[pair->entry / 2]) continue;
+            for (int c = 1; c < 4; c++) sk_union_join(touch->held_with, v[0], v[c]);
+        }
+    for (size_t e = 0; e < touch->skin.edge_count && touch->corrects; e++) {
+        const uint32_t *end = touch->skin.edge[e];
+        if (touch->share[end[0]] < 1 && touch->share[end[1]] < 1) sk_union_join(touch->held_with, end[0], end[1]);
     }
-    return any;
+    for (uint32_t v = 0; v < touch->skin.vertex_count; v++) touch->held_with[v] = sk_union_root(touch->held_with, v);
+}
+
+/* Of which of these, and of which pieces of the skin, somebody is pinned, or has yielded to a pin. */
+static void find_pinned(sk_touch *touch) {
+    memset(touch->pinned, 0, touch->skin.vertex_count);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        if (!(touch->inverse[v] > 0) || sk_has_yielded(touch, v)) touch->pinned[touch->held_with[v]] |= 1, touch->pinned[touch->skin.piece[v]] |= 2;
 }
 
 /* Who is held back keeps its velocity: in the next substep what holds it is near, and a push takes from both what it takes. (Where it was
- * lost, a cloth of 0.2 kg stopped a cube of 1 kg in the air, and cubes that lay on a cloth drove off with it.) But a surface that is pinned
- * loses it to its pins: wound tightly, it would go through itself. */
+ * lost, a cloth of 0.2 kg stopped a cube of 1 kg in the air, and cubes that lay on a cloth drove off with it.) But a pin takes it, and a
+ * surface that is pinned loses it to its pins: wound tightly, it would go through itself. */
 static void store_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const sk_vec3 common = touch->common;
     const real rate = (real)(1 / op->dt);
-    const bool any = find_pinned(touch);
-    for (size_t v = 0; v < touch->skin.vertex_count && any; v++) {
+    bool any = false;
+    for (size_t v = 0; v < touch->skin.vertex_count && !any; v++) any = touch->share[v] < 1;
+    if (!any) return;
+    find_held(touch);
+    find_pinned(touch);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->share[v] < 1)) continue;
         const sk_vec3 to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
         const size_t slot = touch->slot[v];
+        const bool loses = (touch->pinned[touch->held_with[v]] & 1) || (touch->pinned[touch->skin.piece[v]] & 2);
         sk_store_at(run->vector[SK_X], op->packed, slot, to);
-        if (touch->pinned[touch->skin.piece[v]]) sk_add_at(run->vector[SK_V], op->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
+        if (loses) sk_add_at(run->vector[SK_V], op->packed, slot, sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v]))));
     }
 }
 

@@ -130,7 +130,8 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
-    uint8_t *pinned;  /* of pieces of the skin: somebody of theirs is */
+    uint32_t *held_with; /* the first of those who hold each other back; */
+    uint8_t *pinned;     /* of such a first one 1: somebody among them is; and of pieces of the skin 2 */
     uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
     uint8_t *waits;    /* and whether it is one of them */
     uint8_t *lost;    /* it is looked for */
