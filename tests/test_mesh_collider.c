@@ -126,6 +126,15 @@ static void what_is_open(void **state) {
     for (int i = 0; i < 2; i++) assert_near(distance[i], 0.2, 10 * EPSILON), assert_near(normal[i][1], i ? -1 : 1, 10 * EPSILON);
     assert_near(distance[2], 0, 10 * EPSILON);
     assert_near(normal[2][1], 1, 10 * EPSILON);
+    // the lower half of a ball, whose faces look down, holds what lies in it
+    s = make_ball(0.5, 0, 8);
+    const size_t faces = 64, corners = 48 + 3 * 64;
+    memmove(s->size, s->size + faces, (s->mesh.face_count - faces) * sizeof *s->size);
+    memmove(s->corner, s->corner + corners, (s->mesh.face_vertex_count - corners) * sizeof *s->corner);
+    s->mesh.face_count -= faces, s->mesh.face_vertex_count -= corners;
+    skein_handle dish = add_solid(world, s, NULL);
+    OK(world, skein_collider_probe(world, dish, 2, (double[]){0, -0.4, 0, 0, -0.6, 0}, distance, normal[0]));
+    for (int i = 0; i < 2; i++) assert_near(distance[i], 0.1, 0.003), assert_near(normal[i][1], i ? -1 : 1, 0.02);
     // faces that look inwards are turned; those that do not agree are told
     s = make_box(1, 1, 1);
     for (int f = 0; f < 6; f++) {

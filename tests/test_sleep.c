@@ -355,6 +355,18 @@ static void what_a_collider_held_falls(void **state) {
     }
 }
 
+/* Ground that is tilted, in one step. */
+static void what_lies_on_a_plane_slides(void **state) {
+    (void)state;
+    skein_world *world = ground("xpbd", 1);
+    skein_handle body = sheet(world, "body", "", 0.05, 0, 0.1, 3);
+    until_asleep(world, body, 600);
+    OK(world, skein_set_path(world, "colliders.0.normal", skein_vector(1, 1, 0)));
+    steps(world, 60, dt);
+    assert_true(!skein_body_asleep(world, body) && position_of(world, 40).x > 0.5);
+    skein_world_destroy(world);
+}
+
 /* Contacts and crossings of a plate and a body are those of two that are awake in the same places. */
 static void is_as_if_awake(skein_world *world) {
     size_t touching, others;
@@ -857,6 +869,7 @@ int main(void) {
         cmocka_unit_test(calls_wake),
         cmocka_unit_test(what_loses_its_hold_falls),
         cmocka_unit_test(what_a_collider_held_falls),
+        cmocka_unit_test(what_lies_on_a_plane_slides),
         cmocka_unit_test(what_stands_pinned_wakes),
         cmocka_unit_test(loose_ends_count),
         cmocka_unit_test(what_comes_back_is_joined_again),

@@ -8,7 +8,7 @@
  *
  * Which side a point is on: of a mesh that is closed, by the pseudo-normal of what is nearest, a face, an edge or a corner
  * (Baerentzen and Aanaes 2005); of any other by the generalized winding number, far triangles by dipoles (Barill and others
- * 2018). An open sheet (a dish, a ground, a crate without its lid) has no inside: it is solid from both sides. */
+ * 2018). An open sheet (a dish, a ground) has no inside: it is solid from both sides. */
 #ifndef SK_COLLIDERS_TRIMESH_H
 #define SK_COLLIDERS_TRIMESH_H
 
