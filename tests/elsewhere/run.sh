@@ -10,7 +10,7 @@ shift 3
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 # without a graphics card; what stands in for a part that is left out (*_alone, *_absent) would be there twice
-files=$(ls src/*.c src/*/*.c | grep -v -e '^src/gpu/' -e '_alone[.]c$' -e '_absent[.]c$')
+files=$(find src -name '*.c' | sort | grep -v -e '^src/gpu/' -e '_alone[.]c$' -e '_absent[.]c$')
 # the list of kinds, as the build makes it
 cmake -DOUTPUT="$work/catalogue_kinds.h" "-DFILES=$(echo "$files" | sed "s|^|$PWD/|" | paste -sd ';')" -P cmake/kinds.cmake
 for precision; do
