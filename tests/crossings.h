@@ -101,4 +101,12 @@ static inline size_t crossings_now(crossing_search *all, const skein_world *worl
     return all->found;
 }
 
+/* The same of a world whose surfaces are looked for now. */
+static inline size_t crossings_of(skein_world *world) {
+    crossing_search all = crossing_begin(world);
+    const size_t crossings = crossings_now(&all, world);
+    crossing_free(&all);
+    return crossings;
+}
+
 #endif

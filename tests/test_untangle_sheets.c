@@ -30,24 +30,17 @@ static void add_sheet(skein_world *world, int side, double width, double across,
                              NULL));
 }
 
-static size_t count(skein_world *world) {
-    crossing_search all = crossing_begin(world);
-    const size_t crossings = crossings_now(&all, world);
-    crossing_free(&all);
-    return crossings;
-}
-
 /* Whether they do, and stay so; they have no more energy by then than that, J, where nothing moved. */
 static bool come_apart(skein_world *world, int number, bool falls, double most) {
     enum { MOST = 150, AFTER = 20 };
-    if (!count(world)) fail_msg("pair %d does not begin in each other", number);
+    if (!crossings_of(world)) fail_msg("pair %d does not begin in each other", number);
     int frames = 0;
-    for (; frames < MOST && count(world) > 0; frames++) steps(world, 1, 1.0 / 60);
+    for (; frames < MOST && crossings_of(world) > 0; frames++) steps(world, 1, 1.0 / 60);
     const bool apart = frames < MOST;
     const double energy = statistics_of(world).kinetic_energy;
     if (apart && !falls && energy > most) fail_msg("pair %d: %g J where nothing moved", number, energy);
     if (apart) steps(world, AFTER, 1.0 / 60);
-    if (apart && count(world) > 0) fail_msg("pair %d: %zu crossings, once it was apart", number, count(world));
+    if (apart && crossings_of(world) > 0) fail_msg("pair %d: %zu crossings, once it was apart", number, crossings_of(world));
     skein_world_destroy(world);
     return apart;
 }

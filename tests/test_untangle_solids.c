@@ -19,13 +19,6 @@ static void add_some_cube(skein_world *world, double height) {
                              NULL));
 }
 
-static size_t count(skein_world *world) {
-    crossing_search all = crossing_begin(world);
-    const size_t crossings = crossings_now(&all, world);
-    crossing_free(&all);
-    return crossings;
-}
-
 /* Returns how long they took, in frames; they have no more energy by then than that, J, where nothing moved. (At 0.4 m/s, as they are led,
  * both would have 0.16; where forces alone act, springs that are led together push back.) */
 static int come_apart(const char *method, int substeps, double thickness, double most, bool falls, int number) {
@@ -41,14 +34,14 @@ static int come_apart(const char *method, int substeps, double thickness, double
     }
     add_some_cube(world, 0.4);
     add_some_cube(world, 0.4 + 0.35 * (1 - some(0.1, 0.7)));
-    assert_true(count(world) > 0);
+    assert_true(crossings_of(world) > 0);
     int frames = 0;
-    for (; frames < MOST && count(world) > 0; frames++) steps(world, 1, 1.0 / 60);
-    if (count(world) > 0) fail_msg("pair %d, %s: %zu crossings after %d frames", number, method, count(world), frames);
+    for (; frames < MOST && crossings_of(world) > 0; frames++) steps(world, 1, 1.0 / 60);
+    if (crossings_of(world) > 0) fail_msg("pair %d, %s: %zu crossings after %d frames", number, method, crossings_of(world), frames);
     const double energy = statistics_of(world).kinetic_energy;
     if (!falls && energy > most) fail_msg("pair %d, %s: %g J where nothing moved", number, method, energy);
     for (int f = 0; f < AFTER; f++) steps(world, 1, 1.0 / 60);
-    assert_int_equal(count(world), 0); // and stay so
+    assert_int_equal(crossings_of(world), 0); // and stay so
     skein_world_destroy(world);
     return frames;
 }

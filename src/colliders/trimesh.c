@@ -205,8 +205,8 @@ static void turn_out(sk_trimesh *m) {
 }
 
 /* Whether a mesh with a border is a sheet, and not a body with holes: the areas of a body's faces, as vectors, sum up to next to nothing.
- * (Of a flat sheet they are all there is, of half a sphere half; of a cube without its lid, which has an inside, a fifth. By the winding number, the hollow
- * side of a sheet would be inside or outside as its faces happen to look.) */
+ * (Of a flat sheet they are all there is, of half a sphere half; of a cube without its lid, which has an inside, a fifth. By the
+ * winding number, the hollow side of a sheet would be inside or outside as its faces happen to look.) */
 static bool is_sheet(const sk_trimesh *m) {
     const double most = 0.3;
     double sum[3] = {0, 0, 0}, all = 0;

@@ -374,8 +374,11 @@ static void find_held(sk_touch *touch) {
 /* Of which of these, and of which pieces of the skin, somebody is pinned, or has yielded to a pin. */
 static void find_pinned(sk_touch *touch) {
     memset(touch->pinned, 0, touch->skin.vertex_count);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (!(touch->inverse[v] > 0) || sk_has_yielded(touch, v)) touch->pinned[touch->held_with[v]] |= 1, touch->pinned[touch->skin.piece[v]] |= 2;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        if (touch->inverse[v] > 0 && !sk_has_yielded(touch, v)) continue;
+        touch->pinned[touch->held_with[v]] |= 1;
+        touch->pinned[touch->skin.piece[v]] |= 2;
+    }
 }
 
 /* Who is held back keeps its velocity: in the next substep what holds it is near, and a push takes from both what it takes. (Where it was

@@ -26,11 +26,16 @@ static uint32_t size_at(const sk_tangle *tangle, uint32_t v) {
  * triangle's surface, which is divided there, too, has a smaller one; or the edge does not divide anything. */
 typedef enum inner_end { FIRST_END, SECOND_END, THEIRS, UNKNOWN } inner_end;
 
+/* Whether an edge between two parts has its second end in the smaller one. */
+static bool second_is_inner(const sk_tangle *tangle, const uint32_t edge[2]) {
+    const uint32_t a = tangle->part[edge[0]], b = tangle->part[edge[1]];
+    return tangle->size[b] < tangle->size[a] || (tangle->size[b] == tangle->size[a] && b < a);
+}
+
 static inner_end find_inner(const sk_tangle *tangle, const uint32_t edge[2], const uint32_t t[3]) {
-    uint32_t a = tangle->part[edge[0]], b = tangle->part[edge[1]];
-    if (a == b) return UNKNOWN;
-    bool second = tangle->size[b] < tangle->size[a] || (tangle->size[b] == tangle->size[a] && b < a);
-    uint32_t size = tangle->size[second ? b : a];
+    if (tangle->part[edge[0]] == tangle->part[edge[1]]) return UNKNOWN;
+    const bool second = second_is_inner(tangle, edge);
+    const uint32_t size = size_at(tangle, edge[second]);
     bool divided = tangle->part[t[0]] != tangle->part[t[1]] || tangle->part[t[0]] != tangle->part[t[2]];
     for (int c = 0; c < 3 && divided; c++)
         if (size_at(tangle, t[c]) < size) return THEIRS;
@@ -105,15 +110,15 @@ static real share_of(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[
     return first + second > 0 ? first / (first + second) : 0;
 }
 
-/* Where a sheet is gone through, who is lighter may be held by pins: so both go. */
-static const real half = (real)0.5;
-
 static void lead(sk_tangle *tangle, uint32_t v, sk_vec3 way) {
     sk_accumulate(&tangle->lead[v], way);
     tangle->lead[v].w++;
 }
 
 /* ---- what is led as a whole ---- */
+
+/* Where a sheet is gone through, who is lighter may be held by pins: so both go. */
+static const real half = (real)0.5;
 
 static bool is_solid(const sk_skin *skin, uint32_t v) {
     return skin->closed[skin->piece[v]];
@@ -142,10 +147,8 @@ static void add_place(sk_whole *whole, sk_vec4 built) {
  * the other. (By its own crossings, it would go out on all sides of the solid at once.) */
 static void add_cut_solid(sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
     sk_tangle *tangle = &touch->tangle;
-    const uint32_t a = tangle->part[edge[0]], b = tangle->part[edge[1]];
-    if (!is_solid(&touch->skin, edge[0]) || is_solid(&touch->skin, t[0]) || a == b) return;
-    const bool second = tangle->size[b] < tangle->size[a] || (tangle->size[b] == tangle->size[a] && b < a);
-    const sk_vec3 way = way_through(touch->p, edge[second], t);
+    if (!is_solid(&touch->skin, edge[0]) || is_solid(&touch->skin, t[0]) || tangle->part[edge[0]] == tangle->part[edge[1]]) return;
+    const sk_vec3 way = way_through(touch->p, edge[second_is_inner(tangle, edge)], t);
     add_way(piece_of(touch, edge[0]), way, half);
     uint32_t largest = 0;
     for (int c = 0; c < 3; c++) largest = size_at(tangle, t[c]) > largest ? size_at(tangle, t[c]) : largest;
@@ -402,7 +405,8 @@ bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x,
 }
 
 void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator) {
-    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->marked, tangle->cut, tangle->crossing.data};
+    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->marked,
+                      tangle->cut, tangle->crossing.data};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     *tangle = (sk_tangle){.any = false};
 }
