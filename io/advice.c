@@ -160,8 +160,8 @@ static size_t advise_of_crossings(skein_world *world, io_warnings warnings) {
     skein_statistics s;
     if (!meet || skein_world_statistics(world, &s) || !s.crossings) return 0;
     io_warn(warnings,
-            "%zu edge%s through faces at the start: contact leads surfaces apart at its recovery; two that cross along a "
-            "line which divides neither stay as they are, so move them if some are left in the end",
+            "%zu edge%s through faces at the start: contact leads surfaces apart at its recovery; where both are pinned "
+            "they may stay as they are, so move them if some are left in the end",
             s.crossings, s.crossings == 1 ? " goes" : "s go");
     return 1;
 }
