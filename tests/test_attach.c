@@ -130,6 +130,58 @@ static void offset_and_start(void **state) {
     skein_world_destroy(world);
 }
 
+/* A cape that hangs on a box by its top edge and may be 0.1 m off at most; nothing of it is flung where the box jumps. */
+static skein_world *with_cape(const char *method, bool keys, skein_handle *box, skein_handle *cape) {
+    skein_world *world = new_world(method, !strcmp(method, "symplectic_euler") ? 100 : 10);
+    add_gravity(world);
+    *box = add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box")));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", 13, 11), SKEIN_PAIR("size", 0.6, 0.8),
+                                            SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_VEC3("position", 0, 0.05, 0.55), SKEIN_TEXT("pins", "top edge")),
+                             cape));
+    if (keys)
+        OK(world, skein_motion_add(world, "keys", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 0.4834 0 0 0, 0.4835 15 0 0"), SKEIN_TEXT("on", "cape"),
+                                                  SKEIN_TEXT("colliders", "box"), SKEIN_REAL("jump", 1)),
+                                   NULL));
+    OK(world, skein_motion_add(world, "attach", NULL,
+                               SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_TEXT("to", "box"), SKEIN_REAL("max_distance", 0.1)), NULL));
+    return world;
+}
+
+static void assert_calm(skein_world *world, int frame) {
+    skein_statistics t;
+    OK(world, skein_world_statistics(world, &t));
+    if (!(t.kinetic_energy < 0.01 && t.max_stretch < 0.02)) print_error("frame %d: %g J, stretch %g\n", frame, t.kinetic_energy, t.max_stretch);
+    assert_true(t.kinetic_energy < 0.01 && t.max_stretch < 0.02);
+}
+
+static void a_leash_goes_along_with_jumps(void **state) {
+    (void)state;
+    static const char *const methods[] = {"xpbd", "pbd", "symplectic_euler", "backward_euler"};
+    for (size_t m = 0; m < COUNT(methods); m++)
+        for (int by = 0; by < 3; by++) { // a motion that jumps; its fields; its vertices
+            skein_handle box, cape;
+            skein_world *world = with_cape(methods[m], !by, &box, &cape);
+            for (int f = 1; f <= 60; f++) {
+                const double at = f < 30 ? 0 : 15, shift[3] = {15, 0, 0};
+                double corner[8][3];
+                corners_of_box(1, corner);
+                for (int v = 0; v < 8; v++) corner[v][0] += at;
+                if (by == 1) OK(world, skein_set(world, box, "position", skein_vector(at, 0, 0)));
+                if (by == 2) OK(world, skein_collider_vertices_set(world, box, &corner[0][0], 8));
+                if (by && f == 30) {
+                    OK(world, skein_collider_teleport(world, box));
+                    OK(world, skein_body_teleport(world, cape, NULL, shift));
+                }
+                steps(world, 1, dt);
+                assert_calm(world, f);
+            }
+            assert_near(position_of(world, 0).x, 15 - 0.3, 0.02);
+            skein_world_destroy(world);
+        }
+}
+
 /* What is free is pulled there: it hangs m g/k below its seat, however fast that goes. */
 static void a_pull_gives_way(void **state) {
     (void)state;
@@ -458,6 +510,7 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_rigid_motion_carries_exactly), cmocka_unit_test(on_a_deforming_mesh_they_keep_their_weights),
         cmocka_unit_test(offset_and_start),               cmocka_unit_test(a_pull_gives_way),
+        cmocka_unit_test(a_leash_goes_along_with_jumps),
         cmocka_unit_test(what_cannot_carry_is_refused),   cmocka_unit_test(colliders_come_and_go),
         cmocka_unit_test(on_a_triangle_that_deforms_it_follows), cmocka_unit_test(what_is_tied_flies_as_one),
         cmocka_unit_test(the_nearest_triangles_are_found), cmocka_unit_test(words_name_what_pins_do), cmocka_unit_test(a_motion_leads_what_words_name), cmocka_unit_test(its_stiffness_counts_at_its_place), cmocka_unit_test(backward_euler_solves_stiff_attachments), cmocka_unit_test(of_several_the_named_one_counts), cmocka_unit_test(bits_do_not_depend_on_threads),

@@ -293,7 +293,68 @@ static void a_program_deforms_it(void **state) {
     }
 }
 
+/* Its vertices slide under what lies on it: that comes along, as friction lets it. A band at 0.5 m/s. */
+static void a_program_slides_it(void **state) {
+    (void)state;
+    for (size_t i = 0; i < COUNT(all_methods); i++)
+        for (int closed = 0; closed < 2; closed++) {
+            skein_handle floor;
+            double x[3];
+            uint32_t p;
+            const double y = closed ? 0.5 : 0;
+            skein_world *world = with_floor(all_methods[i], closed ? make_box(8, 1, 8) : make_sheet(8), 0.3, 0, 0, &floor);
+            solid *s = closed ? make_box(8, 1, 8) : make_sheet(8);
+            const int count = closed ? 8 : 4;
+            double built[8];
+            for (int k = 0; k < count; k++) built[k] = s->position[k][0];
+            OK(world, skein_particles_add(world, 1, (double[]){0.3, y + 0.002, 0.1}, NULL, (double[]){0.1}, &p));
+            for (int f = 1; f <= 60; f++) {
+                for (int k = 0; k < count; k++) s->position[k][0] = built[k] + 0.5 * f / 60.0;
+                OK(world, skein_collider_vertices_set(world, floor, s->position[0], (size_t)count));
+                run(world, 1);
+            }
+            place_of(world, x);
+            assert_near(x[0] - 0.3, 0.5 - 0.5 * 0.5 / (2 * 0.3 * 9.81), 0.01); // until it goes along
+            assert_near(x[1], y + 0.002, 1e-4);
+            free(s);
+            skein_world_destroy(world);
+        }
+}
+
 /* ---- speed ---- */
+
+/* A plate of 1 mm, or a sheet, whose vertices a program leads at up to 100 m/s, against what hangs still in the air and across what
+ * flies along it, takes it along on the side where it was. */
+static void nothing_passes_what_is_led(void **state) {
+    (void)state;
+    static const double speeds[] = {1, 10, 100}, asides[] = {0, 30};
+    for (size_t i = 0; i < COUNT(all_methods); i++)
+        for (int n = 0; n < 3 * 2 * 2; n++) {
+            const double speed = speeds[n % 3], aside = asides[n / 3 % 2];
+            const bool sheet = n / 6;
+            skein_world *world = new_world(all_methods[i], 5);
+            skein_handle plate = add_solid(world, sheet ? make_sheet(60) : make_box(60, 0.001, 60), SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.002)));
+            solid *s = sheet ? make_sheet(60) : make_box(60, 0.001, 60);
+            const int count = sheet ? 4 : 8;
+            double built[8][2], x[3];
+            uint32_t p;
+            for (int k = 0; k < count; k++) built[k][0] = s->position[k][0], built[k][1] = s->position[k][1];
+            OK(world, skein_particles_add(world, 1, (double[]){0.1, 0.5, 0.2}, NULL, (double[]){0.1}, &p));
+            for (int f = 1; f <= 60; f++) {
+                for (int k = 0; k < count; k++) {
+                    s->position[k][0] = built[k][0] + aside * f / 60, s->position[k][1] = built[k][1] + speed * f / 60;
+                }
+                OK(world, skein_collider_vertices_set(world, plate, s->position[0], (size_t)count));
+                run(world, 1);
+                place_of(world, x);
+                if (!(x[1] - speed * f / 60 >= -1e-5))
+                    print_error("%s: it comes at %g m/s, %g aside%s\n", all_methods[i], speed, aside, sheet ? ", a sheet" : "");
+                assert_true(x[1] - speed * f / 60 >= -1e-5);
+            }
+            free(s);
+            skein_world_destroy(world);
+        }
+}
 
 /* What comes at up to 400 m/s, straight or aslant, at a plate of 1 mm, a sheet without any, standing or coming towards it, stays on its side. */
 static void nothing_passes(void **state) {
@@ -360,7 +421,8 @@ int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(a_box_is_a_box),        cmocka_unit_test(the_nearest_of_all), cmocka_unit_test(what_is_open),
         cmocka_unit_test(what_is_refused),       cmocka_unit_test(rest_slope_and_bounce), cmocka_unit_test(it_carries),
-        cmocka_unit_test(a_program_deforms_it),  cmocka_unit_test(nothing_passes),
+        cmocka_unit_test(a_program_deforms_it),  cmocka_unit_test(a_program_slides_it),
+        cmocka_unit_test(nothing_passes),        cmocka_unit_test(nothing_passes_what_is_led),
         cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

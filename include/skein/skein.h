@@ -658,7 +658,7 @@ skein_status skein_shape_of(const skein_world *world, skein_handle object, skein
  * where they put it. Together they say how it goes on (`centre` where it stands now, `motion.velocity`, and
  * `motion.start` now), and what they have not moved does not travel. Sizes and radii change at once.
  *
- * This call says that what has been set since the last step is no way, but where the collider stands from now on. So
+ * This call says that what has been set since the last step, vertices as well, is no way, but where the collider stands from now on. So
  * does a reset, and setting the time; a collider that is not enabled does not travel. Its work on particles counts
  * against the dissipated energy. */
 skein_status skein_collider_teleport(skein_world *world, skein_handle collider);

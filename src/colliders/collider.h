@@ -28,6 +28,7 @@ typedef struct sk_contact {
     sk_wide3 normal;  /* unit, out of the solid */
     sk_wide distance; /* to the surface, negative inside */
     sk_wide speed;    /* of the surface along the normal, besides the pose's motion; only of types that deform */
+    sk_wide3 slide;   /* and what it has besides, along itself; only of types that a program may lead (`changes`) */
 } sk_contact;
 
 typedef void sk_probe(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact);
@@ -85,6 +86,8 @@ typedef struct sk_collider_type {
     void (*begin)(const void *params, double time, double dt);
     bool (*changes)(const void *params);
     void (*follow)(const void *params, double time);
+    void (*stop)(const void *params); /* it is where it was led to, at once */
+    double (*fastest)(const void *params); /* what of it is led fastest in the present step, m/s */
     sk_passing passing;
     /* Of types that know better than their probes do where they are passed, else NULL: where the way from a to b first crosses the surface, as
      * a part of it, over 1 where it does not, and the unit normal on the side of a; and a ball that the surface is in. */

@@ -30,6 +30,10 @@ static sk_wide look_further(const sk_trimesh *m, sk_wide3 p, sk_mask looked, sk_
     return further;
 }
 
+SK_INLINE sk_wide3 turned(const real r[9], sk_wide3 a) {
+    return (sk_wide3){r[0] * a.x + r[1] * a.y + r[2] * a.z, r[3] * a.x + r[4] * a.y + r[5] * a.z, r[6] * a.x + r[7] * a.y + r[8] * a.z};
+}
+
 SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
     const mesh_params *params = data;
     const sk_trimesh *m = params->made;
@@ -55,7 +59,7 @@ SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, con
     }
     contact->normal = (sk_wide3){{0}, sk_splat(1), {0}};
     contact->distance = sk_splat((real)SK_FAR), contact->speed = sk_splat(0);
-    sk_wide3 n = contact->normal;
+    sk_wide3 n = contact->normal, slide = {{0}, {0}, {0}};
     for (int l = 0; l < SK_PART; l++) {
         if (found[l] < 0) continue;
         const real at[3] = {own.x[l], own.y[l], own.z[l]};
@@ -63,9 +67,10 @@ SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, con
         sk_trimesh_look(m, (uint32_t)found[l], at, &spot);
         n.x[l] = (real)spot.normal[0], n.y[l] = (real)spot.normal[1], n.z[l] = (real)spot.normal[2];
         contact->distance[l] = (real)spot.distance * scale, contact->speed[l] = (real)spot.speed * scale;
+        slide.x[l] = (real)spot.slide[0] * scale, slide.y[l] = (real)spot.slide[1] * scale, slide.z[l] = (real)spot.slide[2] * scale;
     }
-    contact->normal = (sk_wide3){r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
-                                 r[6] * n.x + r[7] * n.y + r[8] * n.z};
+    contact->slide = turned(r, slide);
+    contact->normal = turned(r, n);
 }
 
 void SK_KERNEL(probe)(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
@@ -160,6 +165,14 @@ static void follow(const void *data, double time) {
     sk_trimesh_follow(((const mesh_params *)data)->made, time);
 }
 
+static void stop(const void *data) {
+    sk_trimesh_stop(((const mesh_params *)data)->made);
+}
+
+static double fastest(const void *data) {
+    return ((const mesh_params *)data)->scale * ((const mesh_params *)data)->made->fastest;
+}
+
 static const sk_making making = {.make = sk_mesh_make, .unmake = sk_mesh_unmake};
 const sk_collider_type sk_solid_mesh = {
     .kind = {"mesh", "what a mesh encloses, or an open one from both sides; moved as a whole, or by a program", SKEIN_COLLIDER,
@@ -180,5 +193,7 @@ const sk_collider_type sk_solid_mesh = {
     .ball = ball,
     .changes = changes,
     .follow = follow,
+    .stop = stop,
+    .fastest = fastest,
 };
 #endif

@@ -201,6 +201,7 @@ void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, c
 void sk_collider_stop(sk_collider *collider) {
     sk_travel *travel = &collider->travel;
     travel->moving = travel->noted = travel->changed = false;
+    if (collider->type->stop) collider->type->stop(collider->params);
 }
 
 bool sk_collider_moves(const sk_collider *collider) {

@@ -173,15 +173,16 @@ SK_INLINE void probe(const sk_collider *collider, const contact_law *law, const 
     }
     e->normal = contact.normal, e->distance = contact.distance;
     if (collider->type->deforms) e->speed = contact.speed;
+    e->surface = collider->type->changes ? contact.slide : vec3_of(0, 0, 0); // until the rest is known, too
     e->touching = sk_at_most(e->distance, e->reach) & sk_positive(x.w);
 }
 
-/* How the surface moves where it was probed. */
+/* How the surface moves where it was probed, once. */
 SK_INLINE void find_motion(const sk_collider *collider, const sk_pose *pose, encounter *e) {
     sk_vec3 v = pose->velocity, s = pose->spin;
     e->moves = collider->type->deforms || v.x != 0 || v.y != 0 || v.z != 0 || s.x != 0 || s.y != 0 || s.z != 0;
     if (!e->moves) return;
     vec3 arm = minus(xyz(e->x), vec3_of(pose->position.x, pose->position.y, pose->position.z));
-    e->surface = motion_of(vec3_of(v.x, v.y, v.z), vec3_of(s.x, s.y, s.z), arm);
-    if (collider->type->deforms) e->surface = plus(e->surface, times(e->speed, e->normal));
+    vec3 motion = motion_of(vec3_of(v.x, v.y, v.z), vec3_of(s.x, s.y, s.z), arm);
+    e->surface = collider->type->deforms ? plus(plus(motion, times(e->speed, e->normal)), e->surface) : motion;
 }

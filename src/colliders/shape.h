@@ -16,7 +16,7 @@
 #define axis_of(where) vec3_of((where).axis.x, (where).axis.y, (where).axis.z)
 
 SK_INLINE sk_contact contact_of(vec3 normal, num distance) {
-    return (sk_contact){normal, distance, {0}};
+    return (sk_contact){.normal = normal, .distance = distance};
 }
 
 /* From the axes that it was built in to those of the world, and back. */

@@ -115,7 +115,7 @@ static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, co
                                                 origin o, size_t slot, encounter *e) {
     const sk_collider *collider = op->rule;
     sk_wide3 from = find_start(run, op, &o, slot), seen = from;
-    if (o.deforms) seen = plus(from, times(law->h * e->speed, e->normal));
+    if (o.deforms) seen = plus(plus(from, times(law->h * e->speed, e->normal)), times(law->h, e->surface));
     sk_wide3 way = minus(xyz(e->x), seen);
     sk_wide s = e->distance - sk_dot_wide(way, e->normal), slack = e->reach - law->thickness;
     sk_mask is_free = sk_positive(e->x.w), behind = is_free & sk_more(-slack, s), crossing = (sk_mask){0};

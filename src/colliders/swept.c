@@ -8,7 +8,9 @@
  *
  * The kernel is of types that say where a way crosses them (`cross`): ordinary contact keeps particles at the thickness, so that
  * ways up to half of it need no look. Of all others contact itself finds out who is asked (start.h). Position methods give the
- * velocity the same move. */
+ * velocity the same move.
+ *
+ * Of a surface that a program leads, where x0 was is seen as what is nearest to x has gone since. */
 #include "base/kernels.h"
 #include "colliders/collider.h"
 
@@ -17,10 +19,21 @@ SK_KERNELS(sk_op_kernel, sweep);
 
 #ifdef SK_ISA
 
+/* Starts as the surface sees them where it is now, by what of it is nearest to x within reach. */
+SK_INLINE sk_wide3 led_along(const sk_collider *collider, const sk_pose *pose, sk_wide3 from, sk_wide4 x, real h, sk_wide reach) {
+    const sk_wide3 p = {x.x, x.y, x.z};
+    sk_contact contact;
+    collider->type->near[SK_THIS_ISA](collider->params, pose, &p, &reach, &contact);
+    const sk_wide3 n = contact.normal, s = contact.slide;
+    return (sk_wide3){from.x + h * (contact.speed * n.x + s.x), from.y + h * (contact.speed * n.y + s.y),
+                      from.z + h * (contact.speed * n.z + s.z)};
+}
+
 void SK_KERNEL(sweep)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
     sk_swept sweep = sk_swept_begin(collider, run->time - op->dt, run->time - op->before_end, op->coefficient[0] > 0);
     real half = (real)(0.5 * collider->common->thickness), per_step = (real)(op->coefficient[0] / op->dt);
+    real h = (real)(op->dt - op->before_end), led = collider->type->fastest ? h * (real)collider->type->fastest(collider->params) : 0;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), x0 = sk_load_part(run->vector[op->source[1]], slot, packed);
@@ -32,9 +45,10 @@ void SK_KERNEL(sweep)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
                               r[6] * x0.x + r[7] * x0.y + r[8] * x0.z + sweep.shift.z};
         sk_wide3 way = {x.x - from.x, x.y - from.y, x.z - from.z};
         sk_wide3 off = {x.x - sweep.middle.x, x.y - sweep.middle.y, x.z - sweep.middle.z};
-        sk_wide length = sk_wide_sqrt(sk_dot_wide(way, way)), near = length + sweep.radius;
+        sk_wide length = sk_wide_sqrt(sk_dot_wide(way, way)) + led, near = length + sweep.radius;
         sk_mask looked = sk_positive(x.w) & sk_more(length, sk_splat(half)) & sk_at_most(sk_dot_wide(off, off), near * near);
         if (!sk_any(looked)) continue;
+        if (led > 0) from = led_along(collider, &sweep.pose, from, x, h, sk_select(looked, length, sk_splat(-1)));
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         bool any = false;
         for (int l = 0; l < SK_PART; l++) {

@@ -321,18 +321,41 @@ double sk_trimesh_way(const sk_trimesh *m) {
     return most;
 }
 
+/* The step is over: they have arrived, and rest. */
+static void arrive(sk_trimesh *m) {
+    if (!m->moves) return;
+    sk_trimesh_follow(m, m->start + m->dt);
+    memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
+    m->moves = false;
+    m->fastest = 0;
+}
+
+/* Where the welded vertices are led. */
+static void read_led(const sk_trimesh *m, sk_vec3 *place) {
+    // from the last on, so that of several that are one the first counts
+    for (size_t v = m->given_count; v-- > 0;) place[m->vertex_of[v]] = sk_v3_of(&m->led[3 * v]);
+}
+
 void sk_trimesh_begin(sk_trimesh *m, double time, double dt) {
-    if (m->moves) sk_trimesh_follow(m, m->start + m->dt);
-    if (m->moves && !m->leads) memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
+    arrive(m);
     m->moves = m->leads;
     m->leads = false;
     if (!m->moves) return;
     memcpy(m->from, m->place, m->vertex_count * sizeof *m->from);
-    // from the last on, so that of several that are one the first counts
-    for (size_t v = m->given_count; v-- > 0;) m->to[m->vertex_of[v]] = sk_v3_of(&m->led[3 * v]);
-    for (size_t v = 0; v < m->vertex_count; v++)
+    read_led(m, m->to);
+    for (size_t v = 0; v < m->vertex_count; v++) {
         m->velocity[v] = sk_scale((real)(1 / dt), sk_sub(m->to[v], m->from[v]));
+        m->fastest = fmax(m->fastest, (double)sk_length(m->velocity[v]));
+    }
     m->start = m->now = time, m->dt = dt;
+}
+
+void sk_trimesh_stop(sk_trimesh *m) {
+    arrive(m);
+    if (!m->leads) return;
+    m->leads = false;
+    read_led(m, m->place);
+    shape(m);
 }
 
 void sk_trimesh_follow(sk_trimesh *m, double time) {
@@ -390,11 +413,12 @@ void sk_trimesh_look(const sk_trimesh *m, uint32_t triangle, const real p[3], sk
     if (on && !m->closed) sign = 1;
     for (int k = 0; k < 3; k++) spot->normal[k] = on ? (!m->closed && !inside && side < 0 ? -n[k] : n[k]) : sign * away[k] / d;
     spot->distance = (inside ? -1 : 1) * d;
-    spot->speed = 0;
+    spot->speed = spot->slide[0] = spot->slide[1] = spot->slide[2] = 0;
     if (!m->moves) return;
     const uint32_t *corner = m->corner[triangle];
     double v[3][3];
     for (int k = 0; k < 3; k++) to_double(m->velocity[corner[k]], v[k]);
-    for (int k = 0; k < 3; k++)
-        spot->speed += spot->normal[k] * ((1 - weight[0] - weight[1]) * v[0][k] + weight[0] * v[1][k] + weight[1] * v[2][k]);
+    for (int k = 0; k < 3; k++) spot->slide[k] = (1 - weight[0] - weight[1]) * v[0][k] + weight[0] * v[1][k] + weight[1] * v[2][k];
+    spot->speed = dot3(spot->normal, spot->slide);
+    for (int k = 0; k < 3; k++) spot->slide[k] -= spot->speed * spot->normal[k];
 }

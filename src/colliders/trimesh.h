@@ -40,6 +40,7 @@ typedef struct sk_trimesh {
     bool leads;
     sk_vec3 *from, *to; /* of welded vertices, in a step through which they go; NULL like `led` */
     double start, dt, now;
+    double fastest;     /* of their speeds in that step, in the mesh's own frame */
     size_t given_count, vertex_count, triangle_count, node_count;
     uint32_t *vertex_of;      /* of each vertex that was given: which it is, welded */
     sk_vec3 *place, *velocity; /* of welded vertices; m, m/s */
@@ -72,6 +73,8 @@ void sk_trimesh_faults(const sk_trimesh *m, const char *file, char *text, size_t
 bool sk_trimesh_lead(sk_trimesh *m, const double *positions);
 /* A step begins: the vertices set out for where they were led to, or stand still. */
 void sk_trimesh_begin(sk_trimesh *m, double time, double dt);
+/* They are where they were led to, at once, and rest. */
+void sk_trimesh_stop(sk_trimesh *m);
 /* How far vertices are led by the next step, at most, in its own coordinates. */
 double sk_trimesh_way(const sk_trimesh *m);
 /* The surface as it is on that way at a time. */
@@ -91,7 +94,7 @@ sk_trimesh_side sk_trimesh_side_of(const sk_trimesh *m, const real p[3], real wi
 
 typedef struct sk_trimesh_spot {
     double normal[3], distance; /* unit, out of the solid; negative inside */
-    double speed;               /* of the surface there, along the normal */
+    double speed, slide[3];     /* of the surface there: along the normal, and the rest of its velocity */
 } sk_trimesh_spot;
 /* Of a point whose nearest triangle is known. */
 void sk_trimesh_look(const sk_trimesh *m, uint32_t triangle, const real p[3], sk_trimesh_spot *spot);

@@ -37,7 +37,7 @@ static bool find_places(skein_world *world, double time, double (*place)[3]) {
     return true;
 }
 
-/* What is carried along begins where it was carried to. */
+/* What is carried along begins where it was carried to; but who sits on a collider, there where that begins. */
 static void carry_places(const skein_world *world, double (*place)[3]) {
     for (size_t i = 0; i < world->carried.count; i++) {
         const sk_carried *run = &world->carried.data[i];
@@ -46,6 +46,12 @@ static void carry_places(const skein_world *world, double (*place)[3]) {
             sk_frame_place(&run->way, place[p], to);
             memcpy(place[p], to, sizeof to);
         }
+    }
+    for (size_t i = 0; i < world->motions.count && world->carried.count; i++) {
+        const sk_motion *motion = world->motions.data[i];
+        if (!motion->common->enabled || !motion->type->carrier || !motion->seats.place) continue;
+        double since = fmax(0, world->time - motion->common->start);
+        for (size_t k = 0; k < motion->count; k++) motion->type->move(motion, k, since, place[motion->particle[k]]);
     }
 }
 
