@@ -32,7 +32,7 @@ typedef struct skein_recorder {
 } skein_recorder;
 
 /* Begins to record. The recorder is copied. Recorded are steps and what is set: fields, the method, positions,
- * velocities, who is held, places of pins, teleports, the clock, resets, snapshots that are read. Adding or removing
+ * velocities, who is held, places of pins, teleports, vertices of colliders, the clock, resets, snapshots that are read. Adding or removing
  * objects or particles ends the recording, and it says so at its end. What writes past the calls (through a view's
  * pointer) is not recorded: replaying finds it. Costs about half a byte a particle and step, and a look at each. Fails
  * with SKEIN_ERROR_VALUE where one is running, SKEIN_ERROR_MEMORY, and SKEIN_ERROR_FILE where it could not be written.

@@ -295,7 +295,7 @@ void sk_trimesh_faults(const sk_trimesh *m, const char *file, char *text, size_t
 
 /* ---- moving ---- */
 
-bool sk_trimesh_lead(sk_trimesh *m, const double *positions) {
+bool sk_trimesh_provide(sk_trimesh *m) {
     size_t places = m->vertex_count * sizeof *m->from;
     if (!m->led) m->led = sk_allocate(m->allocator, 3 * m->given_count * sizeof *m->led);
     if (!m->from) m->from = sk_allocate(m->allocator, places);
@@ -307,6 +307,11 @@ bool sk_trimesh_lead(sk_trimesh *m, const double *positions) {
     if (!m->led || !m->from || !m->to) return false;
     sk_release(m->allocator, m->cell); // they would have to be made anew all the time
     m->cell = NULL;
+    return true;
+}
+
+bool sk_trimesh_lead(sk_trimesh *m, const double *positions) {
+    if (!sk_trimesh_provide(m)) return false;
     memcpy(m->led, positions, 3 * m->given_count * sizeof *m->led);
     m->leads = true;
     return true;
@@ -353,8 +358,14 @@ void sk_trimesh_begin(sk_trimesh *m, double time, double dt) {
 void sk_trimesh_stop(sk_trimesh *m) {
     arrive(m);
     if (!m->leads) return;
-    m->leads = false;
     read_led(m, m->place);
+    sk_trimesh_settle(m);
+}
+
+void sk_trimesh_settle(sk_trimesh *m) {
+    memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
+    m->moves = m->leads = false;
+    m->fastest = 0;
     shape(m);
 }
 

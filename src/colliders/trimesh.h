@@ -69,6 +69,10 @@ skein_status sk_trimesh_create(const skein_mesh *mesh, sk_allocator *allocator, 
 void sk_trimesh_destroy(sk_trimesh *m); /* NULL is allowed */
 /* What is wrong with it, in words: "the mesh x.obj has 12 open edges"; "" where nothing is. `file` may be "". */
 void sk_trimesh_faults(const sk_trimesh *m, const char *file, char *text, size_t size);
+/* Memory for being led: false when there is none. What is never led needs none. */
+bool sk_trimesh_provide(sk_trimesh *m);
+/* The surface of what is at rest where `place` says now, which may have been written to. */
+void sk_trimesh_settle(sk_trimesh *m);
 /* Where the vertices that were given, 3 numbers each, will be in the next step; false when there is no memory. */
 bool sk_trimesh_lead(sk_trimesh *m, const double *positions);
 /* A step begins: the vertices set out for where they were led to, or stand still. */

@@ -15,7 +15,7 @@
 #include <stdio.h>
 
 static const char magic[8] = {'s', 'k', 'e', 'i', 'n', 'r', 'e', 'c'};
-enum { VERSION = 2, LOT = 64, LOT_BITS = 6, SUMS = 2 + LOT_BITS };
+enum { VERSION = 3, LOT = 64, LOT_BITS = 6, SUMS = 2 + LOT_BITS };
 enum {
     AN_END = 1,
     A_STATE,
@@ -29,7 +29,8 @@ enum {
     THE_CLOCK,
     A_RESET,
     A_STOP,
-    A_CUT /* from version 2 on */
+    A_CUT, /* from version 2 on */
+    VERTICES /* of a collider; from version 3 on */
 };
 
 struct sk_recording {
@@ -175,6 +176,16 @@ void sk_record_teleport(skein_world *world, const sk_object *object) {
     sk_byte_writer w = {r->room, r->size, 0};
     put_object(&w, world, object);
     write_entry(r, A_TELEPORT, r->room, w.at);
+}
+
+void sk_record_vertices(skein_world *world, const sk_object *object, size_t count, const double *xyz) {
+    struct sk_recording *r = room_for(world, 13 + 24 * count);
+    if (!r) return;
+    sk_byte_writer w = {r->room, r->size, 0};
+    put_object(&w, world, object);
+    sk_put_u64(&w, count);
+    for (size_t i = 0; i < 3 * count; i++) sk_put_f64(&w, xyz[i]);
+    write_entry(r, VERTICES, r->room, w.at);
 }
 
 void sk_record_cut(skein_world *world, const sk_body *body) {
@@ -355,6 +366,18 @@ static skein_handle take_object(sk_byte_reader *r, const skein_world *world) {
                                            : (skein_handle){0, 0, 0};
 }
 
+static skein_status do_vertices(sk_byte_reader *r, skein_world *world, skein_error *error) {
+    skein_handle collider = take_object(r, world);
+    const uint64_t count = sk_take_u64(r);
+    if (r->short_ || count != sk_left(r) / 24 || sk_left(r) % 24) return fail_damaged(error, r);
+    double *xyz = sk_allocate(&world->allocator, (size_t)count * 24 + 8);
+    if (!xyz) return sk_fail_memory(error, "an entry of a recording");
+    for (size_t i = 0; i < 3 * count; i++) xyz[i] = sk_take_f64(r);
+    skein_status status = skein_collider_vertices_set(world, collider, xyz, (size_t)count);
+    sk_release(&world->allocator, xyz);
+    return status;
+}
+
 static skein_status do_field(sk_byte_reader *r, skein_world *world, skein_error *error) {
     skein_handle handle = take_object(r, world);
     const char *name = sk_take_text(r);
@@ -416,6 +439,7 @@ static skein_status do_entry(unsigned what, sk_byte_reader *r, skein_world *worl
     case A_HOLD: return do_hold(r, world, error);
     case A_TELEPORT: return skein_collider_teleport(world, take_object(r, world));
     case A_CUT: return do_cut(r, world, error);
+    case VERTICES: return do_vertices(r, world, error);
     case THE_CLOCK: return skein_world_time_set(world, sk_take_f64(r));
     case A_RESET: return skein_world_reset(world);
     case A_STOP: return do_stop(r, d, error);

@@ -12,6 +12,7 @@ void sk_record_numbers(skein_world *world, sk_vector vector, size_t first, size_
 void sk_record_hold(skein_world *world, size_t particle, bool held);
 void sk_record_pins(skein_world *world, const uint32_t *particles, size_t count, const double *xyz);
 void sk_record_teleport(skein_world *world, const sk_object *object);
+void sk_record_vertices(skein_world *world, const sk_object *object, size_t count, const double *xyz);
 void sk_record_cut(skein_world *world, const sk_body *body); /* its faces are cut as they now are */
 void sk_record_clock(skein_world *world, double seconds);
 void sk_record_reset(skein_world *world);

@@ -10,12 +10,15 @@
  *   rests      from version 3 on: of how many bodies it is known that they rest, and of each its place among the objects,
  *              whether it sleeps or is to wake, for how long it has been still, from where on, and beside whom; before these,
  *              whether all are to wake
+ *   surfaces   from version 4 on: of how many colliders a program leads the vertices, and of each its place among the objects, where
+ *              they are, and where they are to go in the next step
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
  * nothing by what it says. Everything else that a world has is made from these (the plan, slots, sweeps, contact's
  * pairs): no bit of a step depends on how long it has been there. */
 #include "world/record.h"
+#include "colliders/trimesh.h"
 #include "world/cut.h"
 
 #include <inttypes.h>
@@ -218,6 +221,36 @@ static void put_rests(sk_byte_writer *w, const skein_world *world) {
     }
 }
 
+/* The surface of an object that is a collider whose vertices a program may lead, else NULL. */
+static sk_trimesh *surface_of(const sk_object *object) {
+    if (object->category != SKEIN_COLLIDER) return NULL;
+    const sk_collider *collider = object->as.collider;
+    return collider->type->surface && collider->type->begin ? collider->type->surface(collider->params) : NULL;
+}
+
+static uint32_t count_led(const skein_world *world) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_trimesh *m = surface_of(world->objects.data[i]);
+        count += m && m->led;
+    }
+    return count;
+}
+
+/* Where they are now that the step is over. */
+static void put_surfaces(sk_byte_writer *w, const skein_world *world) {
+    sk_put_u32(w, count_led(world));
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_trimesh *m = surface_of(world->objects.data[i]);
+        if (!m || !m->led) continue;
+        const sk_vec3 *place = m->moves ? m->to : m->place;
+        sk_put_u32(w, (uint32_t)i);
+        sk_put_u64(w, m->vertex_count), sk_put_u64(w, m->leads ? m->given_count : 0);
+        for (size_t v = 0; v < m->vertex_count; v++) sk_put_real(w, place[v].x), sk_put_real(w, place[v].y), sk_put_real(w, place[v].z);
+        for (size_t k = 0; k < 3 * m->given_count && m->leads; k++) sk_put_f64(w, m->led[k]);
+    }
+}
+
 /* As it is written: 0, here; 1, aside; 2, gone; those asleep are among the rests. */
 static unsigned presence_of(const skein_world *world, size_t particle) {
     const unsigned presence = world->particles.presence[particle];
@@ -225,9 +258,10 @@ static unsigned presence_of(const skein_world *world, size_t particle) {
 }
 
 static void put_all(sk_byte_writer *w, const skein_world *world) {
-    const bool any_rests = count_resting(world) > 0, any_cut = any_rests || count_cut(world) > 0;
+    const bool any_led = count_led(world) > 0, any_rests = any_led || count_resting(world) > 0;
+    const bool any_cut = any_rests || count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
-    sk_put_u32(w, any_rests ? SK_SNAPSHOT_VERSION : any_cut ? 2 : 1);
+    sk_put_u32(w, any_led ? SK_SNAPSHOT_VERSION : any_rests ? 3 : any_cut ? 2 : 1);
     sk_put_u32(w, sizeof(real));
     sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
     put_clock(w, world);
@@ -253,6 +287,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     }
     if (any_cut) put_cuts(w, world);
     if (any_rests) put_rests(w, world);
+    if (any_led) put_surfaces(w, world);
 }
 
 void sk_snapshot_seal(unsigned char *bytes, size_t size) {
@@ -565,6 +600,50 @@ static skein_status take_rests(sk_byte_reader *r, skein_world *world, uint32_t v
         if (status) return status;
         next = index + 1;
     }
+    return r->short_ ? fail_short(error) : SKEIN_OK;
+}
+
+static skein_status take_surface(sk_byte_reader *r, skein_world *world, sk_trimesh *m, bool apply, skein_error *error) {
+    const uint64_t count = sk_take_u64(r), led = sk_take_u64(r);
+    if (r->short_ || count != m->vertex_count || (led && led != m->given_count) || sk_left(r) / (3 * sizeof(real)) < count)
+        return fail_short(error);
+    if (apply && !m->led) world->plan_stale = true;
+    if (apply && !sk_trimesh_provide(m)) return sk_fail_memory(error, "the vertices of a collider");
+    bool good = true;
+    for (size_t v = 0; v < count; v++) {
+        const real x = sk_take_real(r), y = sk_take_real(r), z = sk_take_real(r);
+        good = good && fabs((double)x) <= 1e12 && fabs((double)y) <= 1e12 && fabs((double)z) <= 1e12;
+        if (apply) m->place[v] = (sk_vec3){x, y, z};
+    }
+    for (size_t k = 0; k < 3 * led && !r->short_; k++) {
+        const double x = sk_take_f64(r);
+        good = good && fabs(x) <= 1e12;
+        if (apply) m->led[k] = x;
+    }
+    if (r->short_ || !good) return fail_short(error);
+    if (apply) sk_trimesh_settle(m), m->leads = led != 0;
+    return SKEIN_OK;
+}
+
+/* What nobody led there is as it was made. */
+static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+    const uint32_t count = version > 3 ? sk_take_u32(r) : 0;
+    uint32_t next = 0;
+    for (uint32_t i = 0; i <= count && !r->short_; i++) {
+        const uint32_t index = i < count ? sk_take_u32(r) : (uint32_t)world->objects.count;
+        if (r->short_ || index < next || index > world->objects.count) return fail_short(error);
+        for (; next < index && apply; next++) {
+            sk_trimesh *m = surface_of(world->objects.data[next]);
+            if (!m || !m->led) continue;
+            memcpy(m->place, m->made, m->vertex_count * sizeof *m->place);
+            sk_trimesh_settle(m);
+        }
+        if (i == count) break;
+        sk_trimesh *m = index < world->objects.count ? surface_of(world->objects.data[index]) : NULL;
+        skein_status status = m ? take_surface(r, world, m, apply, error) : fail_short(error);
+        if (status) return status;
+        next = index + 1;
+    }
     return r->short_ || sk_left(r) ? fail_short(error) : SKEIN_OK;
 }
 
@@ -578,7 +657,8 @@ static skein_status walk(skein_world *world, const void *bytes, const skein_snap
     if (!status) status = take_particles(&r, world, apply, error);
     if (!status) status = take_pins(&r, world, apply, error);
     if (!status) status = take_cuts(&r, world, info->version, apply, error);
-    return status ? status : take_rests(&r, world, info->version, apply, error);
+    if (!status) status = take_rests(&r, world, info->version, apply, error);
+    return status ? status : take_surfaces(&r, world, info->version, apply, error);
 }
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
@@ -590,6 +670,8 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the snapshot is of a library built in %s, and this one is in %s: take the other build",
                        info.real_size == 8 ? "double" : "float", sizeof(real) == 8 ? "double" : "float");
+    skein_error ignored;
+    sk_world_find_pins(world, &ignored); // what sits on colliders does so where they were built
     status = walk(world, bytes, &info, set, false, error);
     if (!status) status = sk_world_touch(world);
     if (status) return status;

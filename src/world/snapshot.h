@@ -5,8 +5,8 @@
 #include "base/bytes.h"
 #include "world/world.h"
 
-/* The newest version, which has cuts at its end. Where nothing is cut, the first one is written. */
-enum { SK_SNAPSHOT_VERSION = 3, SK_SNAPSHOT_HEAD = 36 };
+/* The newest version. Written is the oldest that holds what there is: see snapshot.c. */
+enum { SK_SNAPSHOT_VERSION = 4, SK_SNAPSHOT_HEAD = 36 };
 
 void sk_put_value(sk_byte_writer *w, const skein_value *value);
 /* A text of it stands in the reader's bytes. */

@@ -243,7 +243,9 @@ skein_status skein_collider_vertices_set(skein_world *world, skein_handle handle
         if (!(fabs(positions[i]) <= 1e12))
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "vertex %zu: coordinates must be finite, under 1e12", i / 3);
     if (!m->led) world->plan_stale = true; // from now on each substep asks where it is
-    return sk_trimesh_lead(m, positions) ? SKEIN_OK : sk_fail_memory(error, "the vertices");
+    if (!sk_trimesh_lead(m, positions)) return sk_fail_memory(error, "the vertices");
+    sk_record_vertices(world, object, vertex_count, positions);
+    return SKEIN_OK;
 }
 
 skein_status skein_collider_teleport(skein_world *world, skein_handle handle) {
