@@ -76,10 +76,13 @@ static void every_row_matters(void **state) {
         uint64_t whole = hash_without(method_names[m], SIZE_MAX, &count, line, blended);
         assert_int_equal(hash_without(method_names[m], SIZE_MAX, &unheard, line, blended), whole);
         assert_true(count > 20);
-        int silent = 0;
+        int silent = 0, heard = 0;
         for (size_t r = 0; r < count; r++) {
             bool changed = hash_without(method_names[m], r, &unheard, line, blended_without) != whole;
-            if (changed) continue;
+            // of sweeps over and over the last ones may find nothing any more
+            const bool again = strstr(line, "while edges are near their bound");
+            heard += again && changed;
+            if (changed || again) continue;
             silent++;
             // two ops that no such motion depends on: the end of what has all but come to rest (test_bits), and the
             // last step's positions, saved for blending between frames
@@ -89,6 +92,7 @@ static void every_row_matters(void **state) {
             assert_memory_not_equal(blended, blended_without, sizeof blended);
         }
         assert_int_equal(silent, 2);
+        assert_true(heard > 1);
     }
 }
 

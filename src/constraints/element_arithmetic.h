@@ -127,7 +127,7 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
     if (e->divided) below = e->divisor * weight;
     e->over = sk_more(e->value, most) & sk_positive(below) & sk_positive(e->rest[0]);
     if (!sk_any(e->over)) return false;
-    sk_wide s = (most - e->value) / below;
+    sk_wide s = c->elastic * (most - e->value) / below;
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
     if (!moving) return true;
     sk_wide parting = sum_along(e, e->other), square = e->divided ? e->divisor * below : weight;

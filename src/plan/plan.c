@@ -156,7 +156,8 @@ void sk_op_describe(const sk_op *op, char *text, size_t size) {
         return;
     }
     static const char *const durings[] = {
-        [SK_ALWAYS] = "", [SK_WHILE_APART] = " while nothing is near", [SK_WHILE_NEAR] = ", while something is near"};
+        [SK_ALWAYS] = "", [SK_WHILE_APART] = " while nothing is near", [SK_WHILE_NEAR] = ", while something is near",
+        [SK_WHILE_STRAINED] = ", while edges are near their bound"};
     char what[160] = "", iterations[40] = "";
     line words = {what, 0, sizeof what};
     if (!type->arithmetic) put_rule(&words, op);
