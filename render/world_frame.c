@@ -302,7 +302,7 @@ static skein_status take_bodies(render_world_frame *made, skein_world *world, sk
     return status;
 }
 
-/* ---- Colliders that are formulas ------------------------------------------------------------ */
+/* ---- Colliders that are formulas or meshes -------------------------------------------------- */
 
 /* Their meshes come after the bodies', and fill what the rest of the picture takes. */
 static skein_status take_implicit(render_world_frame *made, const skein_world *world, skein_error *error) {

@@ -1,10 +1,11 @@
-/* Meshes of colliders that have a distance alone: a box for the net, its sampling, and a key that says when it is
- * old. */
+/* Meshes of colliders without a simpler shape: their own triangles; or of those that have a distance alone, a box for the net, its
+ * sampling, and a key that says when it is old. */
 #include "render/world_implicit.h"
 
 #include "render/fail.h"
 #include "render/net.h"
 #include "render/planes.h"
+#include "render/world_triangles.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -25,6 +26,8 @@ struct render_implicit {
     uint64_t key; /* of what the mesh was made from */
     render_net net;
     float *uv; /* of terrain: metres along x and z */
+    bool has_triangles; /* it is drawn by them, and has no net */
+    render_world_triangles triangles;
 };
 
 /* ---- Sampling --------------------------------------------------------------------------------- */
@@ -142,18 +145,24 @@ static void draw_in(render_bounds *box, const found *f) {
     }
 }
 
-/* Finds the box in which a surface is drawn. */
-static bool find_box(const skein_world *world, render_implicit *it, const render_bounds *things) {
-    double middle[3], size = room_around * render_bounds_radius(things);
+/* The box in which a surface is looked for first: half a side of it, and its middle. */
+static double begin_search(const skein_world *world, render_implicit *it, const render_bounds *things, double middle[3]) {
+    double size = room_around * render_bounds_radius(things);
     render_bounds_centre(things, middle);
     if (!(size > 0)) {
         skein_pose pose;
-        if (skein_collider_pose(world, it->handle, &pose) == SKEIN_OK) memcpy(middle, pose.position, sizeof middle);
+        if (skein_collider_pose(world, it->handle, &pose) == SKEIN_OK) memcpy(middle, pose.position, sizeof pose.position);
         size = 2;
     }
-    found f = {.any = false};
     it->searched = render_bounds_nothing();
     render_bounds_add(&it->searched, middle, size);
+    return size;
+}
+
+/* Finds the box in which a surface is drawn. */
+static bool find_box(const skein_world *world, render_implicit *it, const render_bounds *things) {
+    double middle[3], size = begin_search(world, it, things, middle);
+    found f = {.any = false};
     render_bounds box = it->searched;
     it->terrain = false;
     for (int search = 0; search < SEARCHES; search++, size *= search_growth) {
@@ -224,9 +233,25 @@ static bool contains(const render_bounds *outer, const render_bounds *inner) {
     return in;
 }
 
+/* By its own triangles, it is drawn whole; and is terrain where the largest box that others are looked for in would not hold it. That
+ * is found out as it begins, and when the rest has left its place: what goes by, or falls off it, makes no other picture of it. */
+static void bring_triangles(const skein_world *world, render_implicit *it, const render_bounds *things) {
+    if (it->made && contains(&it->searched, things)) return;
+    double middle[3], size = begin_search(world, it, things, middle);
+    render_bounds largest = render_bounds_nothing();
+    render_bounds_add(&largest, middle, size * pow(search_growth, SEARCHES - 1));
+    it->terrain = render_bounds_radius(things) > 0 && !contains(&largest, &it->triangles.box);
+    it->made = true;
+}
+
 static bool bring(const skein_world *world, render_implicit *it, const render_bounds *things) {
     uint64_t key = 0;
     bool leaves = false;
+    if (!render_take_triangles(&it->triangles, world, it->handle, &it->has_triangles)) return false;
+    if (it->has_triangles) {
+        bring_triangles(world, it, things);
+        return true;
+    }
     bool known = it->made && contains(&it->searched, things);
     if (!known && !find_box(world, it, things)) return false;
     if (!key_of(world, it, &key)) return false;
@@ -242,6 +267,7 @@ static bool bring(const skein_world *world, render_implicit *it, const render_bo
 
 static void release(render_implicit *it) {
     render_net_release(&it->net);
+    render_triangles_release(&it->triangles);
     free(it->uv);
 }
 
@@ -302,14 +328,18 @@ size_t render_show_implicit(const render_world_implicit *all, render_surface *su
     size_t count = 0;
     for (size_t i = 0; i < all->count; i++) {
         const render_implicit *it = &all->data[i];
-        if (!it->net.triangle_count) continue;
+        if (!it->has_triangles && !it->net.triangle_count) continue;
         render_surface *surface = &surfaces[count++];
-        *surface = (render_surface){.positions = it->net.positions,
-                                    .vertex_count = it->net.vertex_count,
-                                    .triangles = it->net.triangles,
-                                    .triangle_count = it->net.triangle_count,
-                                    .scenery = it->terrain};
-        if (it->terrain) surface->uv = it->uv;
+        if (it->has_triangles) {
+            render_show_triangles(&it->triangles, surface);
+        } else {
+            *surface = (render_surface){.positions = it->net.positions,
+                                        .vertex_count = it->net.vertex_count,
+                                        .triangles = it->net.triangles,
+                                        .triangle_count = it->net.triangle_count};
+            if (it->terrain) surface->uv = it->uv;
+        }
+        surface->scenery = it->terrain;
         paint(&surface->material, it);
     }
     return count;

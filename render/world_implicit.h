@@ -1,4 +1,5 @@
-/* Colliders that are formulas, as triangle meshes: where the distance that contact sees is 0.
+/* Colliders without a simpler shape, as triangle meshes: those made from a mesh by their own triangles (world_triangles.h), an open
+ * mesh has no other; formulas and fields where the distance that contact sees is 0.
  *
  * Called by world_frame.c for every picture. A mesh is made again only when what makes it has changed. A surface that
  * ends is meshed whole; one that goes on (terrain) as far as the box that it is looked for in, which is what else there

@@ -184,7 +184,7 @@ skein_status render_take_colliders(render_world_solids *s, const skein_world *wo
         case SKEIN_SHAPE_BOWL: add_bowl(s, &c); break;
         case SKEIN_SHAPE_CAPSULE: add_capsule(s, &c); break;
         case SKEIN_SHAPE_BOX: add_box(s, &c); break;
-        default: break; // what has no simpler shape is meshed: world_implicit.c
+        default: break; // what has no simpler shape is a mesh: world_implicit.c
         }
     }
     return SKEIN_OK;

@@ -271,6 +271,10 @@ static void reading_and_writing(void **state) {
     REFUSES_ALL(skein_body_vertices_copy(NULL, s.cloth, 1, skein_doubles(xyz, 0), skein_doubles(NULL, 0)));
     REFUSES_ALL(skein_collider_pose(NULL, s.ball, &pose));
     REFUSES_ALL(skein_collider_teleport(NULL, s.ball));
+    skein_triangles triangles;
+    REFUSES_ALL(skein_collider_triangles(NULL, s.ball, &triangles));
+    REFUSES("triangles", skein_collider_triangles(s.world, s.ball, NULL));
+    REFUSES_ALL(skein_collider_vertices_copy(NULL, s.ball, skein_doubles(xyz, 0)));
     size_t touching;
     REFUSES_ALL(skein_surface_contacts_copy(NULL, NULL, 0, &touching));
     REFUSES("count", skein_surface_contacts_copy(s.world, NULL, 0, NULL));

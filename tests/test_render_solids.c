@@ -202,6 +202,25 @@ static void a_bowl_is_the_lower_part_of_its_sphere(void **state) {
     skein_world_destroy(world);
 }
 
+/* It has no inside, and is there from above and from below. */
+static void an_open_mesh_is_seen_from_both_sides(void **state) {
+    (void)state;
+    static const double places[] = {-0.5, 0, -0.4, 0.5, 0, -0.4, 0.5, 0, 0.4, -0.5, 0, 0.4};
+    static const uint32_t size[] = {4}, corners[] = {3, 2, 1, 0};
+    const skein_mesh sheet = {places, 4, size, 1, corners, 4};
+    shape s = {.half = {0.5, 0, 0.4}};
+    skein_handle collider;
+    skein_world *world = skein_world_create(NULL, NULL);
+    OK(skein_collider_add_mesh(world, "mesh", &sheet,
+                               SKEIN_SETTINGS(SKEIN_VEC3("position", 0.2, 0.8, 0), SKEIN_VEC3("rotation", 10, 20, -5)), &collider));
+    OK(skein_collider_pose(world, collider, &s.pose));
+    for (int side = -1; side <= 1; side += 2) {
+        view.camera.from[1] = 0.8 + 3 * side;
+        assert_near(disagreement(world, &s, box_distance), 0, 0.004);
+    }
+    skein_world_destroy(world);
+}
+
 static bool is_red(const uint8_t *p) {
     return p[0] > p[1] + 30 && p[0] > p[2] + 30;
 }
@@ -376,6 +395,7 @@ int main(void) {
         TEST(a_box_is_where_it_stands),
         TEST(a_capsule_is_where_it_stands),
         TEST(a_bowl_is_the_lower_part_of_its_sphere),
+        TEST(an_open_mesh_is_seen_from_both_sides),
         TEST(what_lies_in_a_bowl_is_seen),
         TEST(colliders_cast_shadows),
         TEST(a_rope_is_a_rod_from_particle_to_particle),

@@ -635,7 +635,7 @@ skein_status skein_collider_pose(const skein_world *world, skein_handle collider
 /* What a collider or body looks like to whoever draws it, whatever its kind is. A new kind needs to say nothing: what is
  * solid is seen by its distances, a body by its faces. */
 typedef enum skein_shape_sort {
-    SKEIN_SHAPE_SURFACE, /* a collider: where skein_collider_probe() finds 0; a body: its faces, or loose particles */
+    SKEIN_SHAPE_SURFACE, /* a collider: its skein_collider_triangles(), or where skein_collider_probe() finds 0; a body: its faces, or loose particles */
     SKEIN_SHAPE_PLANE,   /* `axis` is its unit normal */
     SKEIN_SHAPE_BALL,    /* of `radius` */
     SKEIN_SHAPE_BOWL,    /* the inside of a ball of `radius` */
@@ -649,6 +649,17 @@ typedef struct skein_shape {
     double radius, axis[3], size[3]; /* m, about its skein_pose.position, before its rotation; 0 where it has none */
 } skein_shape;
 skein_status skein_shape_of(const skein_world *world, skein_handle object, skein_shape *shape);
+
+/* The triangles that contact finds a collider by ("mesh"), which whoever draws it draws, from both sides: an open mesh has no inside
+ * whose border could be looked for. Vertices that were given at one place are one here. None (`count` 0) for all other
+ * colliders. Pointers live as long as the collider. */
+typedef struct skein_triangles {
+    const uint32_t *vertices; /* count x 3; of a closed mesh counterclockwise as seen from outside, else as they came */
+    size_t count, vertex_count;
+} skein_triangles;
+skein_status skein_collider_triangles(const skein_world *world, skein_handle collider, skein_triangles *triangles);
+/* Copies where their `vertex_count` vertices are now, m, in the world. Fails with SKEIN_ERROR_VALUE where there are none. */
+skein_status skein_collider_vertices_copy(const skein_world *world, skein_handle collider, skein_buffer positions);
 
 /* A collider whose place was set since the last step (its centre, ends, rotation, normal or offset, by skein_set() or
  * skein_set_path()) travels there through the next step, in a straight line and turning the shorter way round, evenly:

@@ -380,6 +380,10 @@ void sk_trimesh_follow(sk_trimesh *m, double time) {
     shape(m);
 }
 
+sk_vec3 sk_trimesh_place(const sk_trimesh *m, size_t vertex, double time) {
+    return m->moves && (time - m->start) / m->dt > 1 - 1e-9 ? m->to[vertex] : m->place[vertex];
+}
+
 /* ---- looking at one triangle ---- */
 
 /* The nearest point of a triangle to `ap`, from corner a on: its weights of b and c, and the normal of the face, edge or corner

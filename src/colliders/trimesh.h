@@ -83,6 +83,8 @@ void sk_trimesh_stop(sk_trimesh *m);
 double sk_trimesh_way(const sk_trimesh *m);
 /* The surface as it is on that way at a time. */
 void sk_trimesh_follow(sk_trimesh *m, double time);
+/* Where a vertex is between two steps, the first of which ends at `time`: at the end of its way, also where no op has followed it there. */
+sk_vec3 sk_trimesh_place(const sk_trimesh *m, size_t vertex, double time);
 
 /* trimesh_tree.c: the tree over `corner`, which it sorts; and its boxes by where the corners are now. */
 bool sk_trimesh_plant(sk_trimesh *m);

@@ -1,7 +1,9 @@
-/* Copies of the state into memory of the caller's own layout: positions, velocities, a surface's vertices and normals. */
+/* Copies of the state into memory of the caller's own layout: positions, velocities, the vertices and normals of a body's surface, those
+ * of a collider's triangles. */
 #include <math.h>
 #include <string.h>
 
+#include "colliders/trimesh.h"
 #include "space/normals.h"
 #include "world/cut.h"
 
@@ -120,4 +122,41 @@ skein_status skein_body_vertices_copy(skein_world *world, skein_handle body, dou
     if (!status && normals.data) status = check_buffer(world, &normals, count, "normals");
     if (!status) status = sk_world_fetch(world);
     return status ? status : copy_vertices(world, object->as.body, blend, &positions, &normals);
+}
+
+/* ---- colliders ---- */
+
+/* A field has triangles, too, but contact asks what was sampled of them. */
+static const sk_trimesh *triangles_of(const sk_collider *collider) {
+    const sk_collider_type *type = collider->type;
+    return type->surface && type->cross ? type->surface(collider->params) : NULL;
+}
+
+skein_status skein_collider_triangles(const skein_world *world, skein_handle handle, skein_triangles *triangles) {
+    SK_NEED(world, world);
+    SK_NEED(world, triangles);
+    const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
+    const sk_trimesh *m = triangles_of(object->as.collider);
+    *triangles = m ? (skein_triangles){m->corner[0], m->triangle_count, m->vertex_count} : (skein_triangles){NULL, 0, 0};
+    return SKEIN_OK;
+}
+
+skein_status skein_collider_vertices_copy(const skein_world *world, skein_handle handle, skein_buffer positions) {
+    SK_NEED(world, world);
+    const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
+    if (!object) return SKEIN_ERROR_HANDLE;
+    const sk_collider *collider = object->as.collider;
+    const sk_trimesh *m = triangles_of(collider);
+    if (!m) return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "", "a %s has no triangles", object->kind->name);
+    skein_status status = check_buffer(world, &positions, m->vertex_count, "positions");
+    const sk_pose pose = sk_collider_pose_at(collider, world->time);
+    const real *r = pose.rotation;
+    for (size_t v = 0; v < m->vertex_count && !status; v++) {
+        const sk_vec3 own = sk_scale((real)collider->type->scale(collider->params), sk_trimesh_place(m, v, world->time));
+        const sk_vec3 at = sk_add(pose.position, sk_v3(r[0] * own.x + r[1] * own.y + r[2] * own.z, r[3] * own.x + r[4] * own.y + r[5] * own.z,
+                                                       r[6] * own.x + r[7] * own.y + r[8] * own.z));
+        put(&positions, v, (double)at.x, (double)at.y, (double)at.z);
+    }
+    return status;
 }
