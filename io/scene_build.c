@@ -10,6 +10,7 @@
 #include "io/own_kinds.h"
 #include "io/reach.h"
 #include "io/mesh.h"
+#include "io/scene_names.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"
 
@@ -19,6 +20,7 @@ typedef struct builder {
     const skein_world_desc *desc;
     io_faults *faults;
     bool body_missing; /* a body had a fault, so that particles have other numbers than the scene means */
+    bool collider_missing;
 } builder;
 
 /* A fault that the library found: its place is a field's name, or nothing. */
@@ -376,13 +378,15 @@ static void add_object(builder *b, const char *path, const json_t *object, skein
     io_place place = {b->file, path, b->faults};
     const skein_kind *kind = kind_of(place, object, category);
     io_settings settings = {0};
-    bool good =
+    bool read =
         kind &&
         io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles
                                                         : category == SKEIN_METHOD   ? skip_budget
-                                                                                     : skip) &&
-        add_of_kind(b, place, object, kind, &settings);
+                                                                                     : skip);
+    if (read) io_names_check(place, b->world, kind, &settings, (io_names_whole){!b->body_missing, !b->collider_missing});
+    bool good = read && add_of_kind(b, place, object, kind, &settings);
     if (!good && category == SKEIN_BODY) b->body_missing = true;
+    if (!good && category == SKEIN_COLLIDER) b->collider_missing = true;
     io_settings_free(&settings);
 }
 
@@ -398,6 +402,7 @@ static void add_section(builder *b, const json_t *root, const io_scene_section *
         io_fault((io_place){b->file, section->name, b->faults}, "", SKEIN_ERROR_VALUE,
                  "expected a list, [ { \"type\": ... }, ... ], not %s", io_json_words(value, words));
         b->body_missing |= section->category == SKEIN_BODY;
+        b->collider_missing |= section->category == SKEIN_COLLIDER;
         return;
     }
     for (size_t i = 0; i < json_array_size(value); i++) {
@@ -412,7 +417,7 @@ skein_world *io_world_from_document(const json_t *root, const char *file, double
     skein_error error = {SKEIN_OK, "", ""};
     skein_world_desc known = desc ? *desc : skein_default_world_desc();
     if (!known.kinds) known.kinds = io_kinds();
-    builder b = {skein_world_create(&known, &error), file, desc, faults, false};
+    builder b = {skein_world_create(&known, &error), file, desc, faults, false, false};
     io_place top = {file, "", faults};
     if (!b.world) {
         io_fault(top, error.where, error.status, "%s", error.message);

@@ -257,7 +257,7 @@ static void scenes_say_what_is_wrong(void **state) {
          "x.json: motions.0.on: there is no body of the name 'flog'"},
         {"\"type\": \"cache\", \"on\": \"held\", \"file\": \"a\"",
          "x.json: motions.0.on: there is no body of the name 'held'; it is the name of a group, and one body is meant"},
-        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "round: there is no body or group of the name 'flog'"},
+        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "x.json: motions.0.on: there is no body or group of the name 'flog'; did you mean 'flag'?"},
     };
     for (size_t i = 0; i < COUNT(faults); i++) {
         char text[600];

@@ -334,6 +334,48 @@ static void all_faults_are_named_in_one_run(void **state) {
     outcome_free(&o);
 }
 
+/* Names of nobody in lists, each with its place, beside faults of other kinds; and no word of what is called so, or may be. */
+static void all_unknown_names_are_named_in_one_run(void **state) {
+    (void)state;
+    char *path = in_folder("names.json"), words[4096];
+    write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge', 'groups': 'clothes, worn' },\n"
+                      "    { 'type': 'flock', 'name': 'a, b', 'count': 2 } ],\n"
+                      "  'forces': [ { 'type': 'gravity', 'on': 'cap, worn, nobody' },\n"
+                      "    { 'type': 'contact', 'ignore': 'cape:shirt, trousers : clothes' },\n"
+                      "    { 'type': 'gravity', 'on': 'gone', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
+                      "    { 'type': 'flocking', 'on': 'a, b', 'neighbours': 'a, cape' } ],\n"
+                      "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'on': 'clotehs' }, { 'type': 'mesh', 'mesh': 'no.obj' } ],\n"
+                      "  'motions': [ { 'type': 'turn', 'on': 'worn, x' }, { 'type': 'turn', 'colliders': 'ball, bat' } ] }");
+    snprintf(words, sizeof words,
+             "skein: %s: forces.0.on: there is no body or group of the name 'cap'; did you mean 'cape'?\n"
+             "skein: %s: forces.0.on: there is no body or group of the name 'nobody'\n"
+             "skein: %s: forces.1.ignore: there is no body or group of the name 'shirt'\n"
+             "skein: %s: forces.1.ignore: there is no body or group of the name 'trousers'\n"
+             "skein: %s: forces.4.neighbours: there is no body or group of the name 'a'\n"
+             "skein: %s: colliders.0.on: there is no body or group of the name 'clotehs'; did you mean 'clothes'?\n"
+             "skein: %s: colliders.1.mesh: %s: cannot read: no such file or directory\n"
+             "skein: %s: motions.0.on: there is no body or group of the name 'x'\n"
+             "skein: %s: 8 faults\n", // 'bat' may be the name of what could not be read
+             path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
+    assert_says(2, "", words, "check", path);
+    // with all colliders there
+    write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge' } ],\n"
+                      "  'colliders': [ { 'type': 'sphere', 'name': 'ball' } ],\n"
+                      "  'motions': [ { 'type': 'turn', 'colliders': 'ball, bat, cape' }, { 'type': 'attach', 'to': 'bal' } ] }");
+    snprintf(words, sizeof words,
+             "skein: %s: motions.0.colliders: there is no collider of the name 'bat'\n"
+             "skein: %s: motions.0.colliders: there is no collider of the name 'cape': it is that of a body or a group of bodies\n"
+             "skein: %s: motions.1.to: there is no collider of the name 'bal'; did you mean 'ball'?\n"
+             "skein: %s: 3 faults\n",
+             path, path, path, path);
+    assert_says(2, "", words, "check", path);
+    // where a body has a fault, names may be its
+    write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3, 3] } ],\n"
+                      "  'forces': [ { 'type': 'gravity', 'on': 'cape, nobody' } ] }");
+    snprintf(words, sizeof words, "skein: %s: bodies.0.grid: expected two whole numbers, not a list of 3\n", path);
+    assert_says(2, "", words, "check", path);
+}
+
 static void what_is_no_file_is_refused(void **state) {
     (void)state;
     char words[1024], *path = in_folder("folder.json");
@@ -421,6 +463,7 @@ int main(void) {
         TEST(check_and_explain_refuse_with_the_same_words),
         TEST(a_refusal_leaves_the_folder_as_it_was),
         TEST(all_faults_are_named_in_one_run),
+        TEST(all_unknown_names_are_named_in_one_run),
         TEST(what_is_no_file_is_refused),
         TEST(a_scene_that_may_not_be_read_is_told),
         TEST(faults_of_sets_are_named),
