@@ -100,15 +100,17 @@ static void default_text(const skein_field *field, char *text, size_t size) {
     snprintf(text, size, "%s%s%s", value, field->unit[0] ? " " : "", field->unit);
 }
 
-static void print_field(const skein_field *field) {
-    char initial[192], range[96];
+/* With what else is to be said of it. */
+static void print_field(const skein_field *field, const char *besides) {
+    char initial[192], range[96], words[1024];
     default_text(field, initial, sizeof initial);
     if (strchr(field->name, '*')) initial[0] = 0; // a name that an object gives: there is no default
     range_text(field, range, sizeof range);
     int column = print_cell(0, NAME_AT, field->name);
     column = print_cell(column, DEFAULT_AT, initial);
     column = print_cell(column, RANGE_AT, range);
-    print_words(column, HELP_AT, field->help);
+    snprintf(words, sizeof words, "%s%s", field->help, besides);
+    print_words(column, HELP_AT, words);
 }
 
 static void print_heads(void) {
@@ -128,12 +130,24 @@ static void print_kind(const skein_kind *kind) {
     char words[512];
     snprintf(words, sizeof words, "%s: %s", kind->name, kind->help);
     print_words(0, 2, words);
-    for (size_t i = 0; i < kind->field_count; i++) print_field(&kind->fields[i]);
+    for (size_t i = 0; i < kind->field_count; i++) print_field(&kind->fields[i], "");
     printf("\n");
 }
 
-/* What besides its fields is in a scene, or in every kind of a category. */
-static void print_common(skein_category category, const char *all) {
+/* The kinds of a category that do not take a common field, as " (not in attach)"; "" where all do. Returns `words`. */
+static const char *exceptions(skein_category category, const char *field, char words[256]) {
+    size_t at = 0;
+    words[0] = 0;
+    for (size_t i = 0; category < SKEIN_CATEGORY_COUNT && kind_at(category, i); i++)
+        if (!skein_kind_takes(kind_at(category, i), field) && at < 200)
+            at += (size_t)snprintf(words + at, 256 - at, "%s%s", at ? ", " : " (not in ", kind_at(category, i)->name);
+    if (at) snprintf(words + at, 256 - at, ")");
+    return words;
+}
+
+/* What besides its fields is in a scene, or in every kind of a category; or in one kind of it, but for what that does not take. */
+static void print_common(skein_category category, const skein_kind *one, const char *all) {
+    char words[256];
     for (size_t i = 0; category == SKEIN_SCENE && io_scene_section_at(i); i++) {
         int column = print_cell(0, NAME_AT, io_scene_section_at(i)->name);
         print_words(column, DEFAULT_AT, io_scene_section_at(i)->help);
@@ -141,7 +155,10 @@ static void print_common(skein_category category, const char *all) {
     size_t count;
     const skein_field *common = skein_common_fields(category, &count);
     if (count) printf("  %s these, too\n", all);
-    for (size_t i = 0; i < count; i++) print_field(&common[i]);
+    for (size_t i = 0; i < count; i++) {
+        if (!one) print_field(&common[i], exceptions(category, common[i].name, words));
+        else if (skein_kind_takes(one, common[i].name)) print_field(&common[i], "");
+    }
     if (count || category == SKEIN_SCENE) printf("\n");
 }
 
@@ -158,7 +175,7 @@ static void print_list(size_t list) {
     }
     print_heads();
     for (size_t i = 0; kind_at(lists[list].category, i); i++) print_kind(kind_at(lists[list].category, i));
-    print_common(lists[list].category, all);
+    print_common(lists[list].category, NULL, all);
 }
 
 /* Prints the list or the kinds of that name; false if there is none. */
@@ -174,7 +191,7 @@ static bool print_named(const char *name) {
             if (strcmp(name, kind->name)) continue;
             print_heads();
             print_kind(kind);
-            print_common(kind->category, "it has");
+            print_common(kind->category, kind, "it has");
             found = true;
         }
     }

@@ -70,7 +70,8 @@ json_t *app_kind_json(const skein_kind *kind) {
     json_object_set_new(json, "name", json_string(kind->name));
     json_object_set_new(json, "help", json_string(kind->help));
     for (size_t i = 0; i < kind->field_count; i++) json_array_append_new(fields, describe_field(&kind->fields[i]));
-    for (size_t i = 0; i < common_count; i++) json_array_append_new(fields, describe_field(&common[i]));
+    for (size_t i = 0; i < common_count; i++)
+        if (skein_kind_takes(kind, common[i].name)) json_array_append_new(fields, describe_field(&common[i]));
     json_object_set_new(json, "fields", fields);
     return json;
 }

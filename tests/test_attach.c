@@ -220,6 +220,34 @@ static void what_cannot_carry_is_refused(void **state) {
     }
 }
 
+/* What is refused of the fields that all motions have is what skein_kind_takes() says, and nothing else. */
+static void it_takes_what_it_says(void **state) {
+    (void)state;
+    size_t count, refused = 0;
+    const skein_field *common = skein_common_fields(SKEIN_MOTION, &count);
+    const skein_kind *attach = skein_kind_find(SKEIN_MOTION, "attach", NULL), *turn = skein_kind_find(SKEIN_MOTION, "turn", NULL);
+    for (size_t f = 0; f < count; f++) {
+        skein_world *world = new_world("xpbd", 1);
+        skein_handle motion;
+        bool text = common[f].type == SKEIN_FIELD_TEXT;
+        add_spots(world, 0);
+        add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box")));
+        OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "box")), &motion));
+        skein_status status = skein_set(world, motion, common[f].name,
+                                        !text                                   ? skein_number(0.5)
+                                        : !strcmp(common[f].name, "jump_times") ? skein_text("1.5 4")
+                                                                                : skein_text("box"));
+        bool said = status && strstr(skein_world_error(world)->message, "no moving frame") != NULL;
+        if (said == skein_kind_takes(attach, common[f].name)) fail_msg("%s: %s", common[f].name, skein_world_error(world)->message);
+        assert_true(skein_kind_takes(turn, common[f].name));
+        refused += said;
+        skein_world_destroy(world);
+    }
+    assert_int_equal(refused, 5);
+    assert_true(skein_kind_takes(attach, "offset"));
+    assert_false(skein_kind_takes(attach, "speed"));
+}
+
 /* One whose collider is removed leads nobody; while it is there it may be set anew, and what was moved keeps its seats. */
 static void colliders_come_and_go(void **state) {
     (void)state;
@@ -511,7 +539,7 @@ int main(void) {
         cmocka_unit_test(a_rigid_motion_carries_exactly), cmocka_unit_test(on_a_deforming_mesh_they_keep_their_weights),
         cmocka_unit_test(offset_and_start),               cmocka_unit_test(a_pull_gives_way),
         cmocka_unit_test(a_leash_goes_along_with_jumps),
-        cmocka_unit_test(what_cannot_carry_is_refused),   cmocka_unit_test(colliders_come_and_go),
+        cmocka_unit_test(what_cannot_carry_is_refused),   cmocka_unit_test(it_takes_what_it_says), cmocka_unit_test(colliders_come_and_go),
         cmocka_unit_test(on_a_triangle_that_deforms_it_follows), cmocka_unit_test(what_is_tied_flies_as_one),
         cmocka_unit_test(the_nearest_triangles_are_found), cmocka_unit_test(words_name_what_pins_do), cmocka_unit_test(a_motion_leads_what_words_name), cmocka_unit_test(its_stiffness_counts_at_its_place), cmocka_unit_test(backward_euler_solves_stiff_attachments), cmocka_unit_test(of_several_the_named_one_counts), cmocka_unit_test(bits_do_not_depend_on_threads),
     };

@@ -358,7 +358,8 @@ static void expect_kind(const char *text, const skein_kind *kind) {
     assert_contains(o.out, words);
     size_t common_count;
     const skein_field *common = skein_common_fields(kind->category, &common_count);
-    for (size_t i = 0; i < common_count; i++) expect_field(o.out, &common[i]);
+    for (size_t i = 0; i < common_count; i++)
+        if (skein_kind_takes(kind, common[i].name)) expect_field(o.out, &common[i]);
     outcome_free(&o);
 }
 
@@ -395,6 +396,26 @@ static void list_shows_every_kind_and_field(void **state) {
     assert_contains(all.out, "\n    restitution        0                0 to 1             ");
     assert_contains(all.out, "\n    normals            area             area|uniform|angle what ");
     outcome_free(&all);
+}
+
+/* A kind's own list has nothing that the kind refuses, and what all have says who does. */
+static void list_shows_what_is_taken(void **state) {
+    (void)state;
+    static const char *const refused[] = {"colliders", "inertia", "jump", "jump_turn", "jump_times"};
+    char words[64];
+    outcome text = SKEIN("list", "attach"), json = SKEIN("list", "attach", "--json"), turn = SKEIN("list", "turn"), all = SKEIN("list", "motions");
+    for (size_t i = 0; i < COUNT(refused); i++) {
+        snprintf(words, sizeof words, "\n    %s ", refused[i]);
+        assert_null(strstr(text.out, words));
+        assert_contains(turn.out, words);
+        assert_contains(strstr(all.out, words), "(not in attach)");
+        snprintf(words, sizeof words, "\"name\": \"%s\"", refused[i]);
+        assert_null(strstr(json.out, words));
+    }
+    assert_contains(text.out, "\n    max_distance ");
+    assert_contains(json.out, "\"name\": \"max_distance\"");
+    assert_null(strstr(turn.out, "(not in"));
+    outcome_free(&text), outcome_free(&json), outcome_free(&turn), outcome_free(&all);
 }
 
 /* Each scene of the folder is there, with all of its own words. */
@@ -485,7 +506,7 @@ int main(void) {
         TEST(check_takes_many_scenes), TEST(scenes_have_names), TEST(meshes_are_scenes),
         TEST(scenes_come_from_standard_input), TEST(shells_complete_every_option),
         TEST(tables_are_there_for_programs),
-        TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(list_tells_of_scenes), TEST(progress_is_shown),
+        TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(list_shows_what_is_taken), TEST(list_tells_of_scenes), TEST(progress_is_shown),
     };
     return cmocka_run_group_tests_name("command", tests, NULL, NULL);
 }

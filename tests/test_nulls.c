@@ -115,6 +115,8 @@ static void kinds_and_fields(void **state) {
     assert_string_equal(error.message, "name is NULL");
     assert_null(skein_field_find(sphere, "no such field", NULL));
     assert_null(skein_common_fields(SKEIN_BODY, NULL));
+    assert_false(skein_kind_takes(NULL, "name"));
+    assert_false(skein_kind_takes(skein_kind_at(SKEIN_BODY, 0), NULL));
     SAYS("field", skein_field_check(NULL, &value, &error));
     SAYS("value", skein_field_check(radius, NULL, &error));
     char text[8] = "before";

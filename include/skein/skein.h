@@ -187,6 +187,9 @@ const skein_kind *skein_kind_find(skein_category category, const char *name, ske
 const char *skein_category_text(skein_category category);
 /* Fields that every kind of the category has besides its own ("enabled", "visible", ...). */
 const skein_field *skein_common_fields(skein_category category, size_t *count);
+/* Whether a kind makes use of a field, its own or a common one: false where it is refused a value other than its default, as those of
+ * moving frames are in a motion that is none ("jump" in an "attach"), and for what is no field of it. */
+bool skein_kind_takes(const skein_kind *kind, const char *field);
 /* A kind's own or common field by name; NULL (and the nearest right name in `error`) if none. In a kind that takes
  * parameters, "parameters.R" is found as "parameters.*". */
 const skein_field *skein_field_find(const skein_kind *kind, const char *name, skein_error *error);

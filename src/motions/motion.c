@@ -2,6 +2,7 @@
 #include "motions/motion.h"
 
 #include <ctype.h>
+#include <string.h>
 
 #include "base/number.h"
 #include "base/status.h"
@@ -36,6 +37,24 @@ const skein_field sk_motion_fields[] = {
             "a share of max_distance for each particle, in their order: as many numbers as it leads or could; empty: 1"),
 };
 const size_t sk_motion_field_count = sizeof sk_motion_fields / sizeof *sk_motion_fields;
+
+bool sk_motion_takes(const sk_motion_type *type, const char *field) {
+    static const char *const of_frames[] = {"colliders", "inertia", "jump", "jump_turn", "jump_times"};
+    for (size_t i = 0; type->carrier && i < sizeof of_frames / sizeof *of_frames; i++)
+        if (!strcmp(field, of_frames[i])) return false;
+    return true;
+}
+
+const skein_field *sk_motion_refused(const sk_motion_type *type, const sk_motion_common *common) {
+    for (size_t i = 0; i < sk_motion_field_count; i++) {
+        const skein_field *field = &sk_motion_fields[i];
+        if (sk_motion_takes(type, field->name)) continue;
+        const skein_value value = sk_field_load(field, common);
+        const double number = value.number[0], usual = field->initial[0];
+        if (field->type == SKEIN_FIELD_TEXT ? value.text && value.text[0] : number < usual || number > usual) return field;
+    }
+    return NULL;
+}
 
 /* Reads the next number of a text, 0 or more; NULL at its end, and `*wrong` if there is anything else. */
 static const char *next_time(const char *at, double *time, bool *wrong) {

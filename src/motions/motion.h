@@ -74,6 +74,10 @@ struct sk_motion {
     sk_seats seats;       /* of a type with a carrier */
 };
 
+/* Whether a type makes use of a common field: one that follows a collider is no moving frame, and takes none of its fields. */
+bool sk_motion_takes(const sk_motion_type *type, const char *field);
+/* The first field that is set to something else than its default, although the type does not take it; NULL: none is. */
+const skein_field *sk_motion_refused(const sk_motion_type *type, const sk_motion_common *common);
 /* Whether a jump is set for a time after `from`, up to `to` (s after the start). */
 bool sk_motion_jumps(const sk_motion_common *common, double from, double to);
 /* Reads up to `most` numbers of the map; returns how many there are, or -1 if it holds anything else. */

@@ -221,11 +221,9 @@ static skein_status find_carrier(const skein_world *world, const sk_motion *moti
 }
 
 static skein_status refuse_frame(const sk_motion *motion, skein_error *error) {
-    const sk_motion_common *common = motion->common;
-    const char *field = common->colliders[0] ? "colliders" : common->inertia < 1 ? "inertia" : common->jump < SK_UNBOUNDED ? "jump"
-                        : common->jump_turn < 180 ? "jump_turn" : common->jump_times[0] ? "jump_times" : NULL;
+    const skein_field *field = sk_motion_refused(motion->type, motion->common);
     if (!field) return SKEIN_OK;
-    return sk_fail(error, SKEIN_ERROR_VALUE, field, "a motion of type \"%s\" is no moving frame: give this to the one that leads the collider",
+    return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "a motion of type \"%s\" is no moving frame: give this to the one that leads the collider",
                    motion->type->kind.name);
 }
 

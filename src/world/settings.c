@@ -46,6 +46,12 @@ const skein_field *skein_common_fields(skein_category category, size_t *count) {
     return sk_common_fields(category, count);
 }
 
+/* A type begins with its kind. */
+bool skein_kind_takes(const skein_kind *kind, const char *field) {
+    if (!kind || !field || !sk_kind_field(kind, field, NULL)) return false;
+    return kind->category != SKEIN_MOTION || sk_motion_takes((const void *)kind, field);
+}
+
 void *sk_common_of(sk_object *object) {
     return &object->common;
 }

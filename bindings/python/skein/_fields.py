@@ -115,7 +115,8 @@ class KindTable:
         self.name, self.help, self.category = raw.name.decode(), raw.help.decode(), raw.category
         count = ctypes.c_size_t()
         common = L.lib.skein_common_fields(raw.category, ctypes.byref(count))
-        rows = [raw.fields[i] for i in range(raw.field_count)] + [common[i] for i in range(count.value)]
+        rows = [raw.fields[i] for i in range(raw.field_count)]
+        rows += [common[i] for i in range(count.value) if L.lib.skein_kind_takes(ctypes.byref(raw), common[i].name)]
         self.fields = {field.name: field for field in map(Field, rows)}
         self.has_parameters = "parameters.*" in self.fields
 
@@ -283,5 +284,6 @@ def settings(table, given, where=""):
 def no_field(table, full, where=""):
     error = L.Error()
     kind = L.lib.skein_kind_find(table.category, table.name.encode(), ctypes.byref(error))
-    L.lib.skein_field_find(kind, full.encode(), ctypes.byref(error))
-    return fault(L.ERROR_NAME, f"{where}.{full}" if where else full, error.message.decode())
+    common = L.lib.skein_field_find(kind, full.encode(), ctypes.byref(error))  # others of the category have it
+    words = f"{table.name} takes no '{full}'" if common else error.message.decode()
+    return fault(L.ERROR_NAME, f"{where}.{full}" if where else full, words)

@@ -166,6 +166,7 @@ CALLS = {
     "skein_kind_find": (c.POINTER(Kind), [c.c_int, text, error]),
     "skein_category_text": (text, [c.c_int]),
     "skein_common_fields": (c.POINTER(Field), [c.c_int, c.POINTER(size)]),
+    "skein_kind_takes": (c.c_bool, [c.POINTER(Kind), text]),
     "skein_field_find": (c.POINTER(Field), [c.POINTER(Kind), text, error]),
     "skein_default_world_desc": (WorldDesc, []),
     "skein_world_destroy": (None, [world]),

@@ -127,6 +127,7 @@ class Setting(unittest.TestCase):
             (skein.ValueFault, r"expected number in N/m.*not 'soft'", lambda: setattr(self.cloth.stretch, "stiffness", "soft")),
             (skein.ValueFault, r"three numbers", lambda: self.world.forces.gravity(acceleration=(1, 2))),
             (skein.NameFault, r"gravity", lambda: self.world.forces.graviti()),
+            (skein.NameFault, r"attach\.jump: attach takes no 'jump'", lambda: self.world.motions.attach(jump=1)),
             (skein.NameFault, r"xpbd", lambda: setattr(self.world, "method", "xpdb")),
             (skein.ValueFault, r"particles: it is missing", lambda: self.world.constraints.distance()),
             (skein.ValueFault, r"takes 2 particles", lambda: self.world.constraints.distance(particles=[0, 1, 2])),
