@@ -101,6 +101,7 @@ static void add_fields(viewer_side *side, const skein_world *world, skein_handle
                        const skein_field *fields, size_t count) {
     for (size_t f = 0; f < count; f++) {
         skein_value value;
+        if (!skein_kind_takes(skein_object_kind(world, handle), fields[f].name)) continue; // setting it would be refused
         if (skein_get(world, handle, fields[f].name, &value)) continue;
         const skein_field *field = listed ? field_to_keep(side, listed, &fields[f]) : &fields[f];
         if (field) add_entry(side, field, value, !skein_field_is_live(world, handle, field->name));

@@ -103,6 +103,10 @@ class Pose(c.Structure):
     _fields_ = [("position", c.c_double * 3), ("rotation", c.c_double * 9)]
 
 
+class Triangles(c.Structure):
+    _fields_ = [("vertices", c.POINTER(c.c_uint32)), ("count", c.c_size_t), ("vertex_count", c.c_size_t)]
+
+
 class Contact(c.Structure):
     _fields_ = [("particle", c.c_uint32), ("collider", Handle), ("normal", c.c_double * 3), ("gap", c.c_double)]
 
@@ -217,6 +221,8 @@ CALLS = {
     "skein_attachments_find": (status, [world, array, size, Handle, array]),
     "skein_collider_add_mesh": (status, [world, text, c.POINTER(Mesh), c.POINTER(Setting), c.POINTER(Handle)]),
     "skein_collider_vertices_set": (status, [world, Handle, array, size]),
+    "skein_collider_triangles": (status, [world, Handle, c.POINTER(Triangles)]),
+    "skein_collider_vertices_copy": (status, [world, Handle, Buffer]),
     "skein_force_probe": (status, [world, Handle, size, array, array]),
     "skein_world_profile": (status, [world, c.c_double, c.POINTER(Pass), size, c.POINTER(size)]),
     "skein_record_begin": (status, [world, c.POINTER(Recorder)]),

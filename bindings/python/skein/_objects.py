@@ -310,6 +310,27 @@ class Collider(Object):
         """What was set since the last step is no way, but where it stands from now on."""
         self._world._call(lib.skein_collider_teleport, self._handle, place=self._place())
 
+    def _triangles(self):
+        found = L.Triangles()
+        self._world._call(lib.skein_collider_triangles, self._handle, ctypes.byref(found), place=self._place())
+        return found
+
+    @property
+    def triangles(self):
+        """The triangles of a "mesh" collider: three numbers of its `vertices` each; none of other kinds."""
+        found = self._triangles()
+        if not found.count:
+            return np.empty((0, 3), np.uint32)
+        return np.ctypeslib.as_array(found.vertices, (found.count, 3)).copy()
+
+    @property
+    def vertices(self):
+        """Where the vertices of a "mesh" collider are now, n x 3, m, in the world; those that were given at one place are one."""
+        out = np.empty((self._triangles().vertex_count, 3), np.float32)
+        if len(out):
+            self._world._call(lib.skein_collider_vertices_copy, self._handle, L.Buffer(out.ctypes.data, 0, 0), place=self._place())
+        return out
+
     def move_vertices(self, vertices):
         """Where the vertices of a "mesh" collider are from the next step on (n x 3, m, in the mesh's own coordinates): set
         before each step, it deforms in any way, and its surface has a velocity."""
