@@ -114,19 +114,19 @@ static const bits_case bits_cases[BITS_CASES] = {{"symplectic_euler", 6, 30, 12,
 #ifdef SKEIN_DOUBLE
 static const uint64_t golden_settled = 0xf97cefa16b520fe8;
 static const uint64_t golden_soon[BITS_CASES] = {
-    0x3f26d93f62383e09, 0x2303d75b854ea1be, 0xc46a2db939975aca, 0x91a969ad3ee4fb28, 0xbea5444586d0f8a8,
+    0x3f26d93f62383e09, 0x2303d75b854ea1be, 0xc46a2db939975aca, 0x603e96f5021ac152, 0xbea5444586d0f8a8,
     0x500f8308305da15b, 0x1a9172868e3e60fa, 0x797ba829bd504996, 0xc3d19f76a0e4282f, 0x2303d75b854ea1be};
 static const uint64_t golden[BITS_CASES] = {
-    0x80f26e7abc30972a, 0x7d941800aca8f55a, 0x64ebd55915872f10, 0x91b7c722974adc5d, 0x6d20bf3c30b2b10a,
-    0x6de2162318829594, 0xace7c5e0f80f8d53, 0xaf3aad74a4e5df43, 0x6917a1a5befa0758, 0x37f86a385bcb0ac0};
+    0x77d5a05320b379bc, 0xeaf55a1196428d91, 0xcc1e570db2b5d925, 0x7e7237fbc6971b36, 0x6d20bf3c30b2b10a,
+    0x144559f77755a9c7, 0xcd77ed50495e59ab, 0x26427ae534514b84, 0x356016cd45f292a6, 0x5ebd13d02f322ed7};
 #else
 static const uint64_t golden_settled = 0xfabf88eb519b5fb9;
 static const uint64_t golden_soon[BITS_CASES] = {
-    0x185d9a9d5c9b9233, 0xde65b4e4438cb595, 0x9a0e6d0fe6fbde36, 0x95a3e6b14f625914, 0x93d519499c7bd5b4,
+    0x185d9a9d5c9b9233, 0xde65b4e4438cb595, 0x9a0e6d0fe6fbde36, 0xadcb127f8b70432d, 0x93d519499c7bd5b4,
     0x95a9a90138cb3cbc, 0x25eff8728e2296fe, 0x2ccba0450da4797f, 0xa8aeca68e5067234, 0xde65b4e4438cb595};
 static const uint64_t golden[BITS_CASES] = {
-    0x9973c95e1d179534, 0x687692b59d732544, 0x1b3eec6e5ab0b739, 0x76cabfd49f1346d7, 0xeafbce5bf8e7022d,
-    0xb8df1690960b019f, 0x7d9e5c50aca5e198, 0x4e8b45a8bfa8f99b, 0x5b579376a273b659, 0xcb93b7b20208a01a};
+    0x1082b713623d853d, 0xdec125e3efdc5631, 0xcfbf1f29774a1383, 0x016abb093859f3b0, 0xeafbce5bf8e7022d,
+    0x9a05b608ad756a49, 0x21bfabe5fd166127, 0x90ae484f83c2bba6, 0x788af52b08ef4070, 0x1acda9faded26a25};
 #endif
 
 #endif

@@ -104,6 +104,7 @@ struct sk_batch {
     const char *label;
     const bool *enabled;
     const double *bound; /* on the relative violation, enforced by limit ops; NULL: none */
+    bool strained;       /* when the present step began some were near that, or beyond it */
     bool only_bounds;    /* it only bounds: it does not pull, and is not counted */
     double quickness;    /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
                             square of its angular frequency. If low for the substep, position methods may project the

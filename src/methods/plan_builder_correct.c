@@ -15,7 +15,7 @@ static bool keeps_multiplier(const sk_batch *batch, int passes) {
 /* Adds a sweep's op, run in each `every`-th substep; `coefficient` is the number of ops that share the stiffness. */
 static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind,
                       const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient,
-                      size_t every, sk_op_while during) {
+                      size_t every, sk_op_while during, const bool *strained) {
     const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
     sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_ORDERED,
@@ -29,6 +29,7 @@ static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half h
                                .half = half,
                                .every = every,
                                .during = during,
+                               .strained = strained,
                                .end = sk_rows_of_sweep(sweep, sweep->walk.reach)});
 }
 
@@ -36,7 +37,7 @@ static void add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half h
 static void add_sweeps(sk_plan_builder *builder, const sk_batch *batch, size_t first, sk_op_kind kind,
                        const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second) {
     for (size_t i = first; i < batch->sweep_count; i++)
-        add_sweep(builder, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0, SK_ALWAYS);
+        add_sweep(builder, &batch->sweeps[i], SK_WHOLE, kind, kernels, dst, second, 1, 0, SK_ALWAYS, NULL);
 }
 
 static bool has_bound(const sk_batch *batch) {
@@ -110,7 +111,7 @@ static void add_carried_sweeps(sk_plan_builder *builder, const sk_batch *batch, 
     for (int time = 0; time < times; time++)
         for (size_t i = 0; i < batch->sweep_count; i++)
             add_sweep(builder, &batch->sweeps[time % 2 ? batch->sweep_count - 1 - i : i], SK_WHOLE, SK_OP_LIMIT,
-                      &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS);
+                      &batch->type->limit, SK_X, SK_NONE, 1, 0, SK_ALWAYS, NULL);
 }
 
 /* What they have moved since the prediction is carried to the particles between: over `rows`, along the walk if there is one. */
@@ -189,7 +190,7 @@ static void write_batch_every(sk_plan_builder *builder, const sk_batch *batch, b
         sk_half half = whole ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
         add_sweep(builder, sweep, half, SK_OP_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
-                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every, during);
+                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every, during, NULL);
     }
 }
 
@@ -262,8 +263,8 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bo
             for (size_t w = 0; w < batch->sweep_count; w++) {
                 const bool early = batch->only_bounds || batch->sweeps[w].strips;
                 if (!first || early)
-                    add_sweep(builder, &batch->sweeps[w], SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, turn ? beyond : 1, 0,
-                              first || (!early && !turn) ? SK_ALWAYS : SK_WHILE_STRAINED);
+                    add_sweep(builder, &batch->sweeps[w], SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, turn ? beyond : 1, 0, SK_ALWAYS,
+                              first || (!early && !turn) ? NULL : &batch->strained);
             }
     }
 }

@@ -154,7 +154,6 @@ struct sk_run {
     bool last_iteration;           /* and whether it is the last */
     bool near;                     /* surfaces are near each other in this substep, */
     double near_at;                /* which ends at this time */
-    bool strained;                 /* when the step began edges were near their bounds, or beyond them */
     bool no_memory;           /* an allocation failed: so will the step */
 };
 
@@ -223,8 +222,8 @@ typedef struct sk_op_type {
 extern const sk_op_type sk_op_types[SK_OP_KIND_COUNT];
 
 /* When an op runs. Projecting in every second substep would shake bodies that rest on each other, and so is done only
- * while no surfaces are near; bounds of edges need more than one sweep only where some are near them. */
-typedef enum sk_op_while { SK_ALWAYS, SK_WHILE_APART, SK_WHILE_NEAR, SK_WHILE_STRAINED } sk_op_while;
+ * while no surfaces are near. */
+typedef enum sk_op_while { SK_ALWAYS, SK_WHILE_APART, SK_WHILE_NEAR } sk_op_while;
 
 struct sk_op {
     sk_op_kind kind;
@@ -247,7 +246,8 @@ struct sk_op {
     bool alone;            /* it reads slots other than its own: it cannot either */
     bool from_prediction; /* it reads X0 only for X0 + b V, b being its second coefficient: 0 if X0 holds that sum */
     size_t every;          /* it runs in every `every`-th iteration of its repeat, and in the last; 0: in all */
-    sk_op_while during;    /* and, unless SK_ALWAYS, only then */
+    sk_op_while during;    /* and, unless SK_ALWAYS, only while surfaces are near each other, or only while not; */
+    const bool *strained;  /* and, unless NULL, only in steps that begin with edges near their bounds */
     size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
     sk_walk walk;          /* of ops whose elements are strip rows */
     sk_half half;          /* of a sweep along strips */
@@ -286,7 +286,8 @@ sk_op_kernel sk_run_partly;
 sk_op sk_op_for(sk_op op, size_t first_slot, size_t end_slot);
 /* Whether an op runs in the present iteration. */
 static inline bool sk_op_is_due(const sk_run *run, const sk_op *op) {
-    if (op->during == SK_WHILE_STRAINED ? !run->strained : op->during && (op->during == SK_WHILE_NEAR) != run->near) return false;
+    if (op->during && (op->during == SK_WHILE_NEAR) != run->near) return false;
+    if (op->strained && !*op->strained) return false;
     return op->every < 2 || run->iteration % op->every == op->every - 1;
 }
 /* One line about an op, as `skein explain` shows it. */

@@ -156,14 +156,14 @@ void sk_op_describe(const sk_op *op, char *text, size_t size) {
         return;
     }
     static const char *const durings[] = {
-        [SK_ALWAYS] = "", [SK_WHILE_APART] = " while nothing is near", [SK_WHILE_NEAR] = ", while something is near",
-        [SK_WHILE_STRAINED] = ", while edges are near their bound"};
+        [SK_ALWAYS] = "", [SK_WHILE_APART] = " while nothing is near", [SK_WHILE_NEAR] = ", while something is near"};
     char what[160] = "", iterations[40] = "";
     line words = {what, 0, sizeof what};
     if (!type->arithmetic) put_rule(&words, op);
     else if (op->label || !type->formula) put(&words, "%s", op->label ? op->label : "");
     else put_formula(&words, op);
     if (op->every > 1) snprintf(iterations, sizeof iterations, ", every %zu times", op->every);
-    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s%s", type->name, vector_text(op->dst), what,
-             op->end - op->begin, op->order == SK_FREE ? "free" : "ordered", iterations, durings[op->during]);
+    snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s%s%s", type->name, vector_text(op->dst), what,
+             op->end - op->begin, op->order == SK_FREE ? "free" : "ordered", iterations, durings[op->during],
+             op->strained ? ", while edges are near their bound" : "");
 }

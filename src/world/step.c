@@ -207,7 +207,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         double start = world->pace.levels > 1 ? sk_seconds() : 0;
         uint64_t mode = sk_float_mode_enter();
         run.seconds = seconds;
-        run.strained = sk_world_is_strained(world);
+        sk_world_note_strained(world);
         sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);

@@ -1,5 +1,6 @@
-/* Whether edges are near their strain bounds when a step begins. A bound is then swept over and over in each of its substeps; else once
- * is enough, which costs a fifth of that. What hangs by an edge, or by two corners, is held by its tethers, and far from its bound. */
+/* Whether edges are near their strain bound when a step begins, batch by batch, by the positions alone: then the bound is swept over and
+ * over in each of its substeps; else once is enough, which costs a fifth of that. What hangs by an edge, or by two corners, is held by its
+ * tethers, and far from its bound. */
 #include "world/world.h"
 
 enum { SOME = 256 };
@@ -17,12 +18,10 @@ static bool is_strained(const sk_batch *batch, const sk_vec4 *x) {
     return false;
 }
 
-bool sk_world_is_strained(const skein_world *world) {
-    if (world->share) return true; // whose other parts may be, and all run the same ops
+void sk_world_note_strained(skein_world *world) {
     for (size_t i = 0; i < world->rules.batches.count; i++) {
-        const sk_batch *batch = world->rules.batches.data[i];
-        if (!sk_batch_is_on(batch) || batch->only_bounds || !batch->type->strain) continue;
-        if (batch->bound && *batch->bound < SK_UNBOUNDED && is_strained(batch, world->particles.vector[SK_X])) return true;
+        sk_batch *batch = world->rules.batches.data[i];
+        if (!sk_batch_is_on(batch) || batch->only_bounds || !batch->type->strain || !batch->bound || !(*batch->bound < SK_UNBOUNDED)) continue;
+        batch->strained = is_strained(batch, world->particles.vector[SK_X]);
     }
-    return false;
 }

@@ -277,8 +277,8 @@ void sk_world_bound_aggregate(sk_body *body, const double *bound, sk_aggregate *
 /* Lets position methods take the body's newest batch in every second substep, where it is soft for that: `quickness` is as
  * in constraints/constraint.h. */
 void sk_world_take_seldom(sk_body *body, double quickness);
-/* Whether an edge is stretched by more than half its strain bound (strained.c): by the positions alone. */
-bool sk_world_is_strained(const skein_world *world);
+/* Notes of all batches with a strain bound whether anything is stretched by more than half of it (strained.c). */
+void sk_world_note_strained(skein_world *world);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
