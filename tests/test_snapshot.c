@@ -295,6 +295,28 @@ static void vertices_that_are_led(void **state) {
     }
 }
 
+/* Who is tied to a collider sits where that was built, whatever of it is set before the first step. */
+static void seats_are_where_all_was_built(void **state) {
+    (void)state;
+    static const struct {
+        const char *name;
+        skein_value value;
+    } sets[] = {{"scale", {1, {1.5, 0, 0}, NULL}}, {"position", {3, {0.1, 0, 0}, NULL}}, {"rotation", {3, {0, 0, 20}, NULL}}};
+    for (size_t i = 0; i < COUNT(sets); i++) {
+        skein_handle slab, other_slab;
+        skein_world *world = with_slab(&slab), *other = with_slab(&other_slab);
+        OK(world, skein_set(world, slab, sets[i].name, sets[i].value));
+        const snapshot s = take(world);
+        const uint64_t hash = hash_after(world, 2);
+        go_back(other, s);
+        assert_true(hash_after(other, 2) == hash);
+        go_back(world, s);
+        assert_true(hash_after(world, 2) == hash);
+        free(s.bytes);
+        skein_world_destroy(world), skein_world_destroy(other);
+    }
+}
+
 /* Any byte of what is said of them may be another: it is refused, or taken as it stands. */
 static void surfaces_that_are_damaged(void **state) {
     (void)state;
@@ -433,6 +455,7 @@ int main(void) {
         cmocka_unit_test(every_scene),
         cmocka_unit_test(vertices_that_are_led),
         cmocka_unit_test(surfaces_that_are_damaged),
+        cmocka_unit_test(seats_are_where_all_was_built),
         cmocka_unit_test(heads),
         cmocka_unit_test(other_worlds),
         cmocka_unit_test(claims),

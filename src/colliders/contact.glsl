@@ -111,7 +111,7 @@ encounter meet_at_end@(vec4 x, inout vec4 v, vec4 start, float per_step) {
 #ifdef DEFORMS@
         began += op@[0].w * speed@;
 #endif
-        e = coming_out(law@(), e, deep, began);
+        e = coming_out(law@(), e, deep, depth_before(law@(), e, began, length(way)));
         there.level = e.level;
         there.leaving = e.leaving;
     }

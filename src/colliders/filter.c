@@ -127,8 +127,11 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact
     sk_wide4 x0 = sk_load_part(run->vector[SK_X0], slot, packed);
     x0.w = e->x.w; // which X0 does not keep, and who weighs nothing meets nothing
     probe(collider, law, start, x0, sk_splat((real)1e-3), &before);
+    find_motion(collider, start, &before);
     // what began inside comes out at its own speed
-    sk_wide most = before.distance + law->recovery;
+    sk_wide3 way = minus(xyz(e->x), xyz(x0));
+    if (before.moves) way = minus(way, times(law->h, before.surface));
+    sk_wide most = depth_before(*law, *e, before.distance, sk_wide_sqrt(sk_dot_wide(way, way))) + law->recovery;
     *level = sk_select(sk_more(*level, most), most, *level);
     inside &= sk_more(*level, e->distance);
     // the balance of momentum along the normal, without what contact does to it
@@ -136,7 +139,6 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact
     sk_wide3 short_of = minus(times(hw, xyz(force)), minus(xyz(v), xyz(v0)));
     sk_mask lay = touches(law, &before), presses = sk_negative(sk_dot_wide(short_of, e->normal));
     if (!law->bounces) return inside & (presses | ~lay);
-    find_motion(collider, start, &before);
     sk_wide speed = sk_dot_wide(from_surface(xyz(v0), before), before.normal);
     return inside & lay & presses & ~bounces(law, e, speed, force);
 }

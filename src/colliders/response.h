@@ -133,6 +133,12 @@ SK_INLINE flag began_deep(contact_law law, encounter e, num behind) {
     return both(e.touching, law.thickness - slack - PARAM(0.1) * law.recovery > behind);
 }
 
+/* How far off the surface a particle began, whose way was so long. Where it began farther off than that leads, it did not come through
+ * the surface: the inside of a mesh with a hole begins in the air there. Then it is as if it had been where it is. */
+SK_INLINE num depth_before(contact_law law, encounter e, num start, num way) {
+    return pick(start > e.distance + way + (e.reach - law.thickness), e.distance, start);
+}
+
 /* Of a particle that began deep, `start` off the surface: it comes out no further than it may recover. */
 SK_INLINE encounter coming_out(contact_law law, encounter e, flag deep, num start) {
     num level = start + law.recovery, slack = e.reach - law.thickness;

@@ -9,7 +9,8 @@
  *   s < 0                    the way may lead through the solid, or x0 was inside: rays say which (cast.c), and what crosses the
  *                            surface stops there (swept.c), on the side that it came from
  *   s < thickness            by more than a tenth of recovery h: it may have been inside at x0, so that its distance d0 there is
- *                            found. It is pushed no further than to d0 + recovery h, and that push is no velocity
+ *                            found. It is pushed no further than to d0 + recovery h, and that push is no velocity; nor is d0 more
+ *                            than the way leads: who falls through the hole of an open mesh is inside at once
  *
  * Of solids that are not convex a long way may also lead through a wall and end before another one that faces its start:
  * ways longer than five thicknesses are asked for all the same, wherever the surface is nearer than they are long. */
@@ -129,7 +130,8 @@ static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, co
     if (!sk_any(deep)) return stopped;
     sk_contact start;
     collider->type->probe[SK_THIS_ISA](collider->params, pose, &from, &start);
-    *e = coming_out(*law, *e, deep, o.deforms ? start.distance + law->h * start.speed : start.distance);
+    sk_wide began = o.deforms ? start.distance + law->h * start.speed : start.distance;
+    *e = coming_out(*law, *e, deep, depth_before(*law, *e, began, root(dot(way, way))));
     return stopped;
 }
 

@@ -205,10 +205,10 @@ static void turn_out(sk_trimesh *m) {
 }
 
 /* Whether a mesh with a border is a sheet, and not a body with holes: the areas of a body's faces, as vectors, sum up to next to nothing.
- * (Of a flat sheet they are all there is, of half a sphere half; of a cube without its lid, which has an inside, a fifth. By the
- * winding number, the hollow side of a sheet would be inside or outside as its faces happen to look.) */
+ * (Of a flat sheet they are all there is, of half a sphere half, of a crate without its lid a fifth; of a doll without arms, which has an
+ * inside, a twentieth. By the winding number, the hollow side of a sheet would be inside or outside as its faces happen to look.) */
 static bool is_sheet(const sk_trimesh *m) {
-    const double most = 0.3;
+    const double most = 0.15;
     double sum[3] = {0, 0, 0}, all = 0;
     for (size_t t = 0; t < m->triangle_count && m->open_edges; t++) {
         double p[3][3], ab[3], ac[3];

@@ -334,6 +334,14 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     return status;
 }
 
+void sk_world_seat_all(skein_world *world) {
+    bool unseated = false;
+    for (size_t i = 0; i < world->motions.count; i++)
+        unseated |= world->motions.data[i]->type->carrier && !world->motions.data[i]->seats.data;
+    skein_error ignored; // the next step finds what is wrong again, and says it
+    if (unseated && world->motions_stale) sk_world_find_pins(world, &ignored);
+}
+
 /* Whether it is one of the fields that are looked at here. */
 static bool names_field(const char *where) {
     static const char *const fields[] = {"pins", "to", "colliders", "inertia", "jump", "jump_turn", "jump_times"};

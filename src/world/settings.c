@@ -242,6 +242,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     const skein_value before = sk_field_load(field, params);
     const bool same = sk_values_are_same(&value, &before); // programs set much of what they show in each frame
     if (collider) sk_collider_own_place(collider, place);
+    if (collider && !same) sk_world_seat_all(world);
     if (collider) sk_collider_note(collider, world->time);
     skein_status status = leave_groups(world, object, field);
     if (!status) status = replace(world, object, field, params, value, error);

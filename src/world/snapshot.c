@@ -670,8 +670,7 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the snapshot is of a library built in %s, and this one is in %s: take the other build",
                        info.real_size == 8 ? "double" : "float", sizeof(real) == 8 ? "double" : "float");
-    skein_error ignored;
-    sk_world_find_pins(world, &ignored); // what sits on colliders does so where they were built
+    sk_world_seat_all(world);
     status = walk(world, bytes, &info, set, false, error);
     if (!status) status = sk_world_touch(world);
     if (status) return status;

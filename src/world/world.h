@@ -384,6 +384,8 @@ void sk_motion_release(sk_motion *motion, sk_allocator *allocator);
 skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, skein_error *error);
 /* Finds whom motions lead, if anything has changed. */
 skein_status sk_world_find_pins(skein_world *world, skein_error *error);
+/* Those who are to sit on colliders find their seats now, before these are changed: they sit where all was built. */
+void sk_world_seat_all(skein_world *world);
 /* Before a step: what lives in moving frames is carried along, and colliders that go with them are on their way. */
 skein_status sk_world_carry(skein_world *world, double dt, skein_error *error);
 /* Whether a motion carries a body along, or holds it near its places. */
