@@ -269,7 +269,7 @@ static const app_option options[] = {{"--json", NULL,
 
 const app_command app_list_command = {
     "list",
-    "[scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]",
+    "[scenes|scene|bodies|constraints|forces|colliders|motions|methods|exporters|view|KIND] [--json]",
     "every kind with its fields: name, default, unit, range and help\n\n"
     "In a scene, dots are groups: stretch.stiffness is { \"stretch\": { \"stiffness\": ... } }. A range to\n"
     "infinite takes the word \"infinite\", too. A kind by its name: skein list cloth\n\n"

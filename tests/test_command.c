@@ -58,13 +58,13 @@ static void wrong_arguments_are_told(void **state) {
         {{"run", "no/such.json"}, "skein: no/such.json: cannot read: no such file or directory\n"},
         {{"list", "cats", "dogs"},
          "skein list: 'dogs' is one argument too many; "
-         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|motions|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "bodys"},
          "skein list: there is no list or kind 'bodys'; did you mean 'bodies'? "
-         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|motions|methods|exporters|view|KIND] [--json]\n"},
         {{"list", "spere"},
          "skein list: there is no list or kind 'spere'; did you mean 'sphere'? "
-         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|methods|exporters|view|KIND] [--json]\n"},
+         "usage: skein list [scenes|scene|bodies|constraints|forces|colliders|motions|methods|exporters|view|KIND] [--json]\n"},
     };
     for (size_t i = 0; i < COUNT(wrong); i++) {
         const char *const *a = wrong[i].arguments;

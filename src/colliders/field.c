@@ -202,6 +202,7 @@ static skein_status take(void *data, const skein_mesh *mesh, sk_allocator *alloc
     skein_status status = sk_mesh_take(data, mesh, allocator, faults, error);
     if (!status) status = lay_out(f, error);
     if (status) return status;
+    f->mesh.made->sheet = f->mesh.made->openness > 0.3; // its cells know no sheets: a crate without its lid is solid
     if (!(f->node = sk_allocate(allocator, node_count(f) * sizeof *f->node))) return sk_fail_memory(error, "the distances");
     if (!sample(f))
         return sk_fail(error, SKEIN_ERROR_MESH, "mesh",

@@ -204,11 +204,10 @@ static void turn_out(sk_trimesh *m) {
     m->turned = true;
 }
 
-/* Whether a mesh with a border is a sheet, and not a body with holes: the areas of a body's faces, as vectors, sum up to next to nothing.
+/* By what a mesh with a border is a sheet, and not a body with holes: the areas of a body's faces, as vectors, sum up to next to nothing.
  * (Of a flat sheet they are all there is, of half a sphere half, of a crate without its lid a fifth; of a doll without arms, which has an
  * inside, a twentieth. By the winding number, the hollow side of a sheet would be inside or outside as its faces happen to look.) */
-static bool is_sheet(const sk_trimesh *m) {
-    const double most = 0.15;
+static double openness_of(const sk_trimesh *m) {
     double sum[3] = {0, 0, 0}, all = 0;
     for (size_t t = 0; t < m->triangle_count && m->open_edges; t++) {
         double p[3][3], ab[3], ac[3];
@@ -218,7 +217,7 @@ static bool is_sheet(const sk_trimesh *m) {
         for (int k = 0; k < 3; k++) sum[k] += area[k];
         all += sqrt(dot3(area, area));
     }
-    return sqrt(dot3(sum, sum)) > most * all;
+    return all > 0 ? sqrt(dot3(sum, sum)) / all : 0;
 }
 
 /* ---- life ---- */
@@ -247,7 +246,8 @@ static skein_status fill(sk_trimesh *m, const skein_mesh *mesh, skein_error *err
     if (!sk_trimesh_plant(m) || !join_edges(m)) return sk_fail_memory(error, "the mesh");
     m->closed = !m->open_edges && !m->torn_edges;
     if (m->closed && volume_of(m) < 0) turn_out(m);
-    m->sheet = is_sheet(m);
+    m->openness = openness_of(m);
+    m->sheet = m->openness > 0.15;
     m->dipole = sk_allocate(m->allocator, m->node_count * sizeof *m->dipole);
     if (!m->dipole) return sk_fail_memory(error, "the mesh");
     shape(m);

@@ -59,6 +59,7 @@ typedef struct sk_trimesh {
     real slack;        /* squared m: rounding may make a triangle nearer by so much than its box */
     bool closed, turned, moves;
     bool sheet;        /* so open that it has no inside */
+    double openness;   /* the areas of its faces as vectors, summed up, over the sum of its areas; 0 of what is closed */
     size_t open_edges, torn_edges, thin; /* edges of one triangle; of more than two, or of two that disagree; faces left out */
 } sk_trimesh;
 
