@@ -1,8 +1,7 @@
 /* Colliders that are formulas, as the triangles that are drawn: where they are, whether they are whole, when they are
  * made again. */
-#include "helpers.h"
+#include "framed.h"
 #include "render/net.h"
-#include "render/world_frame.h"
 
 /* ---- Nets ------------------------------------------------------------------------------------------- */
 
@@ -59,30 +58,10 @@ static void nets_are_whole(void **state) {
 
 /* ---- In a picture ----------------------------------------------------------------------------------- */
 
-typedef struct scene {
-    skein_world *world;
-    skein_handle collider;
-    render_world_frame *frame;
-} scene;
-
 static scene scene_with(const skein_setting *settings) {
-    scene s = {.world = new_world("xpbd", 2), .frame = render_world_frame_create(NULL)};
-    assert_non_null(s.frame);
-    OK(s.world, skein_body_add(s.world, "cloth", NULL,
-                               SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_VEC3("position", 0, 1, 0)), NULL));
+    scene s = scene_under_cloth(1);
     OK(s.world, skein_collider_add(s.world, "formula", settings, &s.collider));
     return s;
-}
-
-static const render_surface *look(scene *s) {
-    assert_int_equal(render_world_frame_update(s->frame, s->world, NULL, NULL), SKEIN_OK);
-    const render_frame *frame = render_world_frame_get(s->frame);
-    return frame->surface_count > 1 ? &frame->surfaces[1] : NULL;
-}
-
-static void end(scene *s) {
-    render_world_frame_destroy(s->frame);
-    skein_world_destroy(s->world);
 }
 
 /* A ball of any size is found, stands where its collider does, and follows it. */

@@ -1,33 +1,12 @@
 /* Colliders made from meshes, as the triangles that are drawn: their own, wherever the collider or a program has put them. */
-#include "render/world_frame.h"
+#include "framed.h"
 #include "solids.h"
 
-typedef struct scene {
-    skein_world *world;
-    skein_handle collider;
-    render_world_frame *frame;
-} scene;
-
-/* Under a cloth of 1 m. */
 static scene scene_with(const char *kind, solid *s, const skein_setting *settings) {
-    scene made = {.world = new_world("xpbd", 2), .frame = render_world_frame_create(NULL)};
-    assert_non_null(made.frame);
-    OK(made.world, skein_body_add(made.world, "cloth", NULL,
-                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_VEC3("position", 0, 3, 0)), NULL));
+    scene made = scene_under_cloth(3);
     OK(made.world, skein_collider_add_mesh(made.world, kind, &s->mesh, settings, &made.collider));
     free(s);
     return made;
-}
-
-static const render_surface *look(scene *s) {
-    assert_int_equal(render_world_frame_update(s->frame, s->world, NULL, NULL), SKEIN_OK);
-    const render_frame *frame = render_world_frame_get(s->frame);
-    return frame->surface_count > 1 ? &frame->surfaces[1] : NULL;
-}
-
-static void end(scene *s) {
-    render_world_frame_destroy(s->frame);
-    skein_world_destroy(s->world);
 }
 
 /* The corners of the sheet that solids.h makes, wherever they are, each once; `ought` is 4 x 3. */
