@@ -112,8 +112,11 @@ SK_INLINE void project_linear(sk_element *e) {
 }
 #endif
 
-/* Moves elements back to the bound, as if rigid there. Lanes without an element, whose rest value is 0, are never over
- * it. False if all are within. */
+#define SK_LIMIT_ROUNDING ((real)(sizeof(real) == 4 ? 1e-6 : 1e-15))
+
+/* Moves elements back to the bound, as if rigid there, or so many times as far. Lanes without an element, whose rest value is 0, are
+ * never over it. False if all are within. Sweeps that go too far come one after the other, and pass over what rounding may be: of a free
+ * sheet whose bound is 0 they made 9 % of momentum in 10,000 substeps. */
 SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) {
 #ifdef SK_SHARES
     SK_EACH_PARTICLE (i) e->w[i] *= e->rest[1 + i];
@@ -125,7 +128,13 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
     formula(e);
     sk_wide weight = weight_of(e), below = weight;
     if (e->divided) below = e->divisor * weight;
-    e->over = sk_more(e->value, most) & sk_positive(below) & sk_positive(e->rest[0]);
+    sk_wide over = most;
+    if (c->elastic > 1) {
+        sk_wide size = e->rest[0];
+        SK_EACH_PARTICLE (i) size += sk_wide_abs(e->x[i].x) + sk_wide_abs(e->x[i].y) + sk_wide_abs(e->x[i].z);
+        over += SK_LIMIT_ROUNDING * size;
+    }
+    e->over = sk_more(e->value, over) & sk_positive(below) & sk_positive(e->rest[0]);
     if (!sk_any(e->over)) return false;
     sk_wide s = c->elastic * (most - e->value) / below;
     SK_EACH_PARTICLE (i) e->scale[i] = s * e->w[i];
