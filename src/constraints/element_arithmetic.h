@@ -132,7 +132,8 @@ SK_INLINE bool limit(sk_element *e, const sk_element_constants *c, bool moving) 
     if (c->elastic > 1) {
         sk_wide size = e->rest[0];
         SK_EACH_PARTICLE (i) size += sk_wide_abs(e->x[i].x) + sk_wide_abs(e->x[i].y) + sk_wide_abs(e->x[i].z);
-        over += SK_LIMIT_ROUNDING * size;
+        sk_wide rounding = SK_LIMIT_ROUNDING * size, little = (real)1e-4 * e->rest[0];
+        over += sk_select(sk_more(rounding, little), little, rounding);
     }
     e->over = sk_more(e->value, over) & sk_positive(below) & sk_positive(e->rest[0]);
     if (!sk_any(e->over)) return false;
