@@ -326,13 +326,17 @@ double sk_trimesh_way(const sk_trimesh *m) {
     return most;
 }
 
+static void rest(sk_trimesh *m) {
+    memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
+    m->moves = false;
+    m->fastest = 0;
+}
+
 /* The step is over: they have arrived, and rest. */
 static void arrive(sk_trimesh *m) {
     if (!m->moves) return;
     sk_trimesh_follow(m, m->start + m->dt);
-    memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
-    m->moves = false;
-    m->fastest = 0;
+    rest(m);
 }
 
 /* Where the welded vertices are led. */
@@ -363,9 +367,8 @@ void sk_trimesh_stop(sk_trimesh *m) {
 }
 
 void sk_trimesh_settle(sk_trimesh *m) {
-    memset(m->velocity, 0, m->vertex_count * sizeof *m->velocity);
-    m->moves = m->leads = false;
-    m->fastest = 0;
+    rest(m);
+    m->leads = false;
     shape(m);
 }
 

@@ -269,9 +269,9 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity, bo
     }
 }
 
-/* Tethers pull each particle by itself, not its neighbours. On a grid, where paths are straight, that does no harm, and
- * its edges come first. The edges of other meshes come after: in one of 64 x 64 with a limit of 1 %, edges beside pins
- * kept a stretch of 3 %, however often they were swept before the tethers. */
+/* Tethers pull each particle by itself, not its neighbours. On a grid, where paths are straight, that mostly does no harm, and its edges
+ * come first, once. Edges that are near their bound come after them, and those of other meshes always: in one of 64 x 64 with a limit of
+ * 1 %, edges beside pins kept a stretch of 3 %, however often they were swept before the tethers. */
 void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     const sk_rules *rules = builder->rules;
     write_strain_limits(builder, velocity, true);

@@ -340,9 +340,17 @@ static void compare(sk_byte_reader *r, const skein_world *world, skein_differenc
     if (d->found) name_body(world, d);
 }
 
+static skein_handle take_object(sk_byte_reader *r, const skein_world *world) {
+    unsigned category = sk_take_u8(r);
+    uint32_t number = sk_take_u32(r);
+    return category < SKEIN_CATEGORY_COUNT ? skein_object_at(world, (skein_category)category, number)
+                                           : (skein_handle){0, 0, 0};
+}
+
 /* Many numbers of an entry: in the world's memory, for they need not lie where doubles may. */
 static skein_status do_numbers(sk_byte_reader *r, skein_world *world, unsigned what, skein_error *error) {
-    uint64_t first = what == PINS ? 0 : sk_take_u64(r), count = sk_take_u64(r);
+    const skein_handle collider = what == VERTICES ? take_object(r, world) : (skein_handle){0, 0, 0};
+    uint64_t first = what == PINS || what == VERTICES ? 0 : sk_take_u64(r), count = sk_take_u64(r);
     size_t each = what == PINS ? 28 : 24;
     if (r->short_ || count != sk_left(r) / each || sk_left(r) % each) return fail_damaged(error, r);
     double *xyz = sk_allocate(&world->allocator, (size_t)count * 24 + 8);
@@ -352,29 +360,11 @@ static skein_status do_numbers(sk_byte_reader *r, skein_world *world, unsigned w
     for (size_t i = 0; i < 3 * count && !status; i++) xyz[i] = sk_take_f64(r);
     if (status) (void)0;
     else if (what == PINS) status = skein_pins_move(world, pins, (size_t)count, xyz);
+    else if (what == VERTICES) status = skein_collider_vertices_set(world, collider, xyz, (size_t)count);
     else if (what == POSITIONS) status = skein_positions_set(world, (size_t)first, (size_t)count, xyz);
     else status = skein_velocities_set(world, (size_t)first, (size_t)count, xyz);
     sk_release(&world->allocator, xyz);
     sk_release(&world->allocator, pins);
-    return status;
-}
-
-static skein_handle take_object(sk_byte_reader *r, const skein_world *world) {
-    unsigned category = sk_take_u8(r);
-    uint32_t number = sk_take_u32(r);
-    return category < SKEIN_CATEGORY_COUNT ? skein_object_at(world, (skein_category)category, number)
-                                           : (skein_handle){0, 0, 0};
-}
-
-static skein_status do_vertices(sk_byte_reader *r, skein_world *world, skein_error *error) {
-    skein_handle collider = take_object(r, world);
-    const uint64_t count = sk_take_u64(r);
-    if (r->short_ || count != sk_left(r) / 24 || sk_left(r) % 24) return fail_damaged(error, r);
-    double *xyz = sk_allocate(&world->allocator, (size_t)count * 24 + 8);
-    if (!xyz) return sk_fail_memory(error, "an entry of a recording");
-    for (size_t i = 0; i < 3 * count; i++) xyz[i] = sk_take_f64(r);
-    skein_status status = skein_collider_vertices_set(world, collider, xyz, (size_t)count);
-    sk_release(&world->allocator, xyz);
     return status;
 }
 
@@ -435,11 +425,11 @@ static skein_status do_entry(unsigned what, sk_byte_reader *r, skein_world *worl
     case A_FIELD: return do_field(r, world, error);
     case POSITIONS:
     case VELOCITIES:
-    case PINS: return do_numbers(r, world, what, error);
+    case PINS:
+    case VERTICES: return do_numbers(r, world, what, error);
     case A_HOLD: return do_hold(r, world, error);
     case A_TELEPORT: return skein_collider_teleport(world, take_object(r, world));
     case A_CUT: return do_cut(r, world, error);
-    case VERTICES: return do_vertices(r, world, error);
     case THE_CLOCK: return skein_world_time_set(world, sk_take_f64(r));
     case A_RESET: return skein_world_reset(world);
     case A_STOP: return do_stop(r, d, error);

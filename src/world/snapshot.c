@@ -243,10 +243,12 @@ static void put_surfaces(sk_byte_writer *w, const skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_trimesh *m = surface_of(world->objects.data[i]);
         if (!m || !m->led) continue;
-        const sk_vec3 *place = m->moves ? m->to : m->place;
         sk_put_u32(w, (uint32_t)i);
         sk_put_u64(w, m->vertex_count), sk_put_u64(w, m->leads ? m->given_count : 0);
-        for (size_t v = 0; v < m->vertex_count; v++) sk_put_real(w, place[v].x), sk_put_real(w, place[v].y), sk_put_real(w, place[v].z);
+        for (size_t v = 0; v < m->vertex_count; v++) {
+            const sk_vec3 place = sk_trimesh_place(m, v, world->time);
+            sk_put_real(w, place.x), sk_put_real(w, place.y), sk_put_real(w, place.z);
+        }
         for (size_t k = 0; k < 3 * m->given_count && m->leads; k++) sk_put_f64(w, m->led[k]);
     }
 }
