@@ -113,7 +113,6 @@ struct sk_batch {
     sk_aggregate *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded; or NULL */
     uint32_t most_edges; /* of one that only bounds: so many edges of its body's surface lead from end to end of an element
                             at most; 0: that was not looked for yet (world/severed.c) */
-    bool carried;        /* hubs carry its particles (aggregate.h): corrections need not be swept across */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */

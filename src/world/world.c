@@ -245,7 +245,6 @@ bool sk_world_bound_coarse(skein_world *world, sk_body *body, const double *boun
 void sk_world_bound_aggregate(sk_body *body, const double *bound, sk_aggregate *aggregate) {
     sk_world_only_bound(body, bound);
     body->batch[body->batch_count - 1]->aggregate = aggregate;
-    for (size_t i = 0; i < body->batch_count; i++) body->batch[i]->carried = true;
 }
 
 void sk_world_only_bound(sk_body *body, const double *bound) {
