@@ -31,6 +31,8 @@ SK_KERNELS(sk_op_kernel, contact_force);
 SK_KERNELS(sk_op_kernel, contact_impulse);
 SK_KERNELS(sk_op_kernel, contact_push);
 SK_KERNELS(sk_op_kernel, contact_update);
+SK_KERNELS(sk_op_kernel, contact_find_held);
+SK_KERNELS(sk_op_kernel, contact_hold);
 SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 
 #ifdef SK_ISA
@@ -122,6 +124,67 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
     }
 }
 
+/* Where particles began a substep, taken along by the surface as a whole. */
+SK_INLINE sk_wide4 start_of(const sk_run *run, const sk_op *op, const sk_pose *pose, const origin *o, size_t slot) {
+    const sk_wide4 x = sk_load_part(run->vector[SK_X], slot, slot < op->packed);
+    const sk_wide3 start = xyz(sk_load_part(run->vector[o->vector], slot, slot < op->packed));
+    if (!o->moves) return vec4_of(start, x.w);
+    const sk_wide3 arm = minus(start, vec3_of(pose->position.x, pose->position.y, pose->position.z));
+    return vec4_of(plus(start, motion_of(vec3_of(o->shift.x, o->shift.y, o->shift.z), vec3_of(o->turn.x, o->turn.y, o->turn.z), arm)), x.w);
+}
+
+/* Puts down by which plane some are held: its normal, a point of it (T0, with the friction in w), and where they would be had they stuck
+ * to the surface (T1). */
+SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contact_law *law, const encounter *e, sk_mask held, sk_wide3 stuck) {
+    const bool packed = slot < op->packed;
+    const sk_wide4 normal = sk_load_part(run->vector[SK_SUPPORT], slot, packed), level = sk_load_part(run->vector[SK_T0], slot, packed);
+    const sk_wide4 old = sk_load_part(run->vector[SK_T1], slot, packed);
+    const sk_wide3 to = plus(xyz(e->x), times(law->thickness - e->distance, e->normal));
+    sk_store_part(run->vector[SK_SUPPORT], slot, packed, vec4_of(pick3(held, e->normal, xyz(normal)), normal.w));
+    sk_store_part(run->vector[SK_T0], slot, packed, vec4_of(pick3(held, to, xyz(level)), sk_select(held, sk_splat(law->friction), level.w)));
+    sk_store_part(run->vector[SK_T1], slot, packed, vec4_of(pick3(held, stuck, xyz(old)), old.w));
+    __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
+}
+
+/* Who touched when the substep began is held by what he touched: pulled in beside a corner, he is nearer to another face. Else by what he has
+ * come into. Not who began inside: he comes out slowly, and not by velocity. */
+void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    const contact_law law = law_of(op->rule, op->dt);
+    sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
+    const origin o = find_origin(op, &pose);
+    encounter e;
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        if (!meet(run, op, &law, &pose, slot, &e)) continue;
+        const sk_mask in = e.touching & sk_positive(law.thickness - e.distance);
+        sk_wide3 way;
+        const sk_mask came = in & ~began_deep(law, e, off_plane(run, op, &pose, &o, slot, &e, &way));
+        if (!sk_any(in)) continue;
+        encounter first;
+        probe(op->rule, &law, &pose, start_of(run, op, &pose, &o, slot), (sk_wide){0}, &first);
+        const sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
+        if (sk_any(came & ~rested)) put_plane(run, op, slot, &law, &e, came & ~rested, minus(xyz(e.x), way));
+        if (sk_any(rested)) put_plane(run, op, slot, &law, &first, rested, xyz(first.x));
+    }
+}
+
+void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (!__atomic_load_n(run->supported, __ATOMIC_RELAXED)) return;
+    for (size_t slot = begin; slot < end; slot += SK_PART) {
+        const bool packed = slot < op->packed;
+        const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
+        if (!sk_any(sk_positive(dot(normal, normal)))) continue;
+        const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed), level = sk_load_part(run->vector[op->source[1]], slot, packed);
+        const sk_wide push = dot(normal, minus(xyz(level), xyz(x)));
+        const sk_mask in = sk_positive(push) & sk_positive(dot(normal, normal));
+        if (!sk_any(in)) continue;
+        const sk_wide3 moved = minus(xyz(x), xyz(sk_load_part(run->vector[op->source[2]], slot, packed)));
+        const sk_wide3 slide = across(moved, normal, dot(moved, normal));
+        const sk_wide share = share_of(root(dot(slide, slide)), level.w * push);
+        const sk_wide3 to = plus(xyz(x), minus(times(push, normal), times(share, slide)));
+        sk_store_part(run->vector[op->dst], slot, packed, vec4_of(pick3(in, to, xyz(x)), x.w));
+    }
+}
+
 void SK_KERNEL(probe_sixteen)(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES],
                               sk_sixteen_contacts *contacts) {
     for (size_t l = 0; l < SK_LANES; l += SK_PART) {
@@ -144,6 +207,8 @@ const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
 const sk_kernels sk_contact_update = {SK_EACH_ISA(contact_update)};
+const sk_kernels sk_contact_find_held = {SK_EACH_ISA(contact_find_held)};
+const sk_kernels sk_contact_hold = {SK_EACH_ISA(contact_hold)};
 
 const skein_field sk_collider_fields[] = {
     SK_TEXT(sk_collider_common, name, "name", "", "for paths and messages"),

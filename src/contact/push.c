@@ -70,10 +70,16 @@ void sk_touch_lead(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_tangle_lead(touch, run->vector[SK_X], op->source[1] == SK_NONE ? run->vector[SK_X0] : NULL, op->packed);
 }
 
+void sk_touch_push_on(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = ((const sk_force *)op->rule)->state;
+    if (touch && touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
+}
+
 void sk_touch_push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = ((const sk_force *)op->rule)->state;
     if (!touch) return;
     touch->corrects = op->source[1] == SK_NONE; // velocities are made of positions afterwards
-    if (touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count) push_near(touch, run, op);
+    sk_touch_push_on(run, op, from, end);
     sk_touch_lead(run, op, from, end);
 }

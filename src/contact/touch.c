@@ -481,6 +481,7 @@ static const sk_meeting_body *crowded(sk_force *force, sk_allocator *allocator, 
 static const sk_meeting meeting = {
     .begin = {SK_ANY_ISA(begin)},
     .push = {SK_ANY_ISA(sk_touch_push)},
+    .push_on = {SK_ANY_ISA(sk_touch_push_on)},
     .hold = {SK_ANY_ISA(sk_touch_hold)},
     .bound = {SK_ANY_ISA(sk_touch_bound)},
     .near = {SK_ANY_ISA(sk_press_begin)},

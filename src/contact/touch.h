@@ -258,6 +258,8 @@ void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first
 /* ---- push.c ---- */
 
 sk_op_kernel sk_touch_push;
+/* The same in the midst of limits, which goes on with a push: nothing is led. */
+sk_op_kernel sk_touch_push_on;
 /* Where an implicit solve has pressed apart what is near: leads apart what goes through each other, and no more. */
 sk_op_kernel sk_touch_lead;
 

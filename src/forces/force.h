@@ -51,7 +51,7 @@ typedef struct sk_force sk_force;
  *   diagonal, apply  their part of the matrix, as of forces that depend on place (sk_force_type); the products are those
  *                    of the matrix whose diagonal was asked for last */
 typedef struct sk_meeting {
-    sk_kernels begin, hold, push, lead, bound;
+    sk_kernels begin, hold, push, push_on, lead, bound;
     sk_kernels near, press, diagonal, apply;
     /* Makes the force's `state` for the ops, if there is none for these parts. False: no memory. */
     bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,

@@ -27,6 +27,7 @@ typedef struct sk_rules {
         size_t count, capacity;
     } limits;
     const sk_leashes *leashes; /* of the world's motions; NULL: there are none */
+    bool strained;             /* when the present step began, some edge was near its bound (world/strained.c) */
     const char *sparse_solver; /* the name of the world's sparse solver; NULL: it has none */
 } sk_rules;
 
@@ -46,6 +47,7 @@ typedef struct sk_plan_builder {
     bool presses;       /* surfaces that are near press each other apart within the solve, and are not pushed */
     double before_end;  /* how long before the end of the substep X is now, s */
     size_t substep;     /* the place of the substep's repeat */
+    const bool *strained; /* ops that are added now run only where that is so; NULL: always */
     bool no_memory;     /* the plan is incomplete */
 } sk_plan_builder;
 
@@ -121,7 +123,7 @@ typedef enum sk_contact_sort {
 } sk_contact_sort;
 /* An op for each collider. An update reads X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
-typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_HOLD, SK_MEETING_PUSH, SK_MEETING_LEAD, SK_MEETING_BOUND } sk_meeting_sort;
+typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_HOLD, SK_MEETING_PUSH, SK_MEETING_PUSH_ON, SK_MEETING_LEAD, SK_MEETING_BOUND } sk_meeting_sort;
 /* An op for each rule of contact between surfaces. The other functions here call it: a repeat of substeps begins and
  * ends with such ops, and the ops that push come with the limits. */
 void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector velocity);

@@ -19,9 +19,11 @@ static bool is_strained(const sk_batch *batch, const sk_vec4 *x) {
 }
 
 void sk_world_note_strained(skein_world *world) {
+    world->rules.strained = false;
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         sk_batch *batch = world->rules.batches.data[i];
         if (!sk_batch_is_on(batch) || batch->only_bounds || !batch->type->strain || !batch->bound || !(*batch->bound < SK_UNBOUNDED)) continue;
         batch->strained = is_strained(batch, world->particles.vector[SK_X]);
+        world->rules.strained |= batch->strained;
     }
 }
