@@ -295,6 +295,7 @@ static skein_status add_springs(tailor *t) {
         if (sort == SK_SHEAR && t->lines.area && !sk_lines_square(&t->lines)) sk_world_sweep_both_ways(t->body);
     }
     sk_world_add_strain_limit(t->body);
+    sk_world_keep_firm(t->body);
     return add_spans(t);
 }
 

@@ -49,6 +49,10 @@ bool sk_batch_pulls(const sk_batch *batch) {
     return sk_batch_is_on(batch) && !batch->only_bounds;
 }
 
+bool sk_batch_is_firm(const sk_batch *batch) {
+    return sk_batch_pulls(batch) && batch->tether && *batch->tether < SK_UNBOUNDED && !(*batch->bound < SK_UNBOUNDED);
+}
+
 bool sk_batch_is_loaded(const sk_batch *batch) {
     return is_there(batch) && !batch->only_bounds;
 }

@@ -43,6 +43,7 @@ typedef struct sk_plan_builder {
     size_t packed;      /* the first slots that are in packed blocks now */
     double h;           /* of the present substep, s, */
     size_t iterations;  /* and how many of them the repeat has */
+    bool sweeps_more;   /* edges that are not limited are swept more in steps that begin with some that are strained */
     bool predicted;     /* the substep began with X = X0 + h V */
     bool presses;       /* surfaces that are near press each other apart within the solve, and are not pushed */
     double before_end;  /* how long before the end of the substep X is now, s */

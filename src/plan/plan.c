@@ -53,7 +53,7 @@ static void put_back(const kept_block *kept, const sk_op *op, size_t at) {
 }
 
 void sk_run_partly(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_vector written[] = {op->dst, op->source[0], op->source[1], op->source[2], SK_X, SK_V, SK_X0, SK_V0};
+    const sk_vector written[] = {op->dst, op->source[0], op->source[1], op->source[2], SK_X, SK_V, SK_X0, SK_V0, SK_T0, SK_T1, SK_SUPPORT};
     enum { WRITTEN = sizeof written / sizeof *written };
     for (size_t at = begin, next; at < end; at = next) {
         kept_block kept[WRITTEN];

@@ -117,6 +117,15 @@ skein_status skein_sparse_solver_set(skein_world *world, const skein_sparse_solv
     return SKEIN_OK;
 }
 
+/* Room for the ops of a step, where not all are always needed. */
+static bool make_live(skein_world *world) {
+    bool any = false;
+    sk_release(&world->allocator, world->live);
+    world->live = NULL;
+    for (size_t r = 0; r < world->plan.count; r++) any |= world->plan.data[r].strained != NULL;
+    return !any || (world->live = sk_allocate(&world->allocator, world->plan.count * sizeof *world->live));
+}
+
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0, at most 1e6", dt);
@@ -160,11 +169,13 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
 #ifndef SK_SMALL // no page has a part of a run
     if (world->share) sk_share_plan(&world->plan, world->share, world->isa);
 #endif
+    if (!make_live(world)) return sk_fail_memory(error, "the plan");
     status = world->share ? sk_world_check_share(world, error) : SKEIN_OK;
     if (!status) status = make_matrix(world, error);
     if (status) return status;
     if (world->device && (status = world->device->prepare(world->device, world, error))) return status;
     world->plan_dt = dt;
+    world->sweeps_more = builder.sweeps_more;
     world->plan_stale = false;
     return SKEIN_OK;
 }
@@ -188,6 +199,22 @@ sk_run sk_world_run_context(skein_world *world) {
     return run;
 }
 
+/* How many ops from the first on are needed in this step, as copies in `live`: those for what is strained are not, where nothing is. What
+ * is only passed over costs, too: ops of a walk lag behind each other, and threads wait for each. */
+static size_t find_live(const skein_world *world) {
+    const sk_plan *plan = &world->plan;
+    size_t count = 0;
+    for (size_t r = 0; r < plan->count; r++) {
+        const sk_op *op = &plan->data[r];
+        if (op->strained && !*op->strained) continue;
+        world->live[count] = *op;
+        for (size_t k = r + 1; k <= r + op->length; k++)
+            if (plan->data[k].strained && !*plan->data[k].strained) world->live[count].length--;
+        count++;
+    }
+    return count;
+}
+
 /* One step; `seconds` of each op of the plan, or NULL to run them as fast as they go. The plan is up to date. */
 static skein_status take_step(skein_world *world, double dt, double *seconds, skein_error *error) {
     if (!world->steps) {
@@ -207,8 +234,9 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         double start = world->pace.levels > 1 ? sk_seconds() : 0;
         uint64_t mode = sk_float_mode_enter();
         run.seconds = seconds;
-        sk_world_note_strained(world);
-        sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
+        sk_world_note_strained(world, dt);
+        if (world->live && !seconds) sk_run_ops(&run, world->tasks, world->live, find_live(world));
+        else sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);
         if (world->share && world->share->failed)

@@ -128,6 +128,7 @@ void skein_world_destroy(skein_world *world) {
     sk_release(allocator, world->triangles.corner);
     sk_surface_release(&world->surface, allocator);
     sk_release(allocator, world->plan.data);
+    sk_release(allocator, world->live);
     sk_release(allocator, world->plan.parts.data);
     skein_sparse_solver_set(world, NULL);
     sk_matrix_release(&world->matrix, allocator);
@@ -255,6 +256,10 @@ void sk_world_only_bound(sk_body *body, const double *bound) {
 
 void sk_world_add_strain_limit(sk_body *body) {
     body->batch[body->batch_count - 1]->bound = &body->strain_bound;
+}
+
+void sk_world_keep_firm(sk_body *body) {
+    body->batch[body->batch_count - 1]->tether = &body->tether_bound;
 }
 
 skein_status sk_world_add_strips(skein_world *world, const sk_body *body, uint32_t rows, uint32_t columns,

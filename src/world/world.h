@@ -173,7 +173,9 @@ struct skein_world {
     const sk_method_type *method;
     void *method_params;
     sk_plan plan;
+    sk_op *live; /* room for those of its ops that a step needs (step.c), where some are not always needed; else NULL */
     double plan_dt;   /* the step that the plan was written for */
+    bool sweeps_more; /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
     bool plan_stale;  /* rules, settings or the method have changed */
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
@@ -277,10 +279,13 @@ void sk_world_bound_aggregate(sk_body *body, const double *bound, sk_aggregate *
 /* Lets position methods take the body's newest batch in every second substep, where it is soft for that: `quickness` is as
  * in constraints/constraint.h. */
 void sk_world_take_seldom(sk_body *body, double quickness);
-/* Notes of all batches with a strain bound whether anything is stretched by more than half of it (strained.c). */
-void sk_world_note_strained(skein_world *world);
+/* Notes of all batches with a strain bound whether anything is stretched by more than half of it, and of a sheet's edges without one
+ * whether they are to be swept more (strained.c). */
+void sk_world_note_strained(skein_world *world, double dt);
 /* Keeps the edges of the body's newest batch under its strain bound. */
 void sk_world_add_strain_limit(sk_body *body);
+/* These edges are a sheet's, which its tethers keep firm: see sk_batch.tether. */
+void sk_world_keep_firm(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
 void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
     SK_PRINTF(3, 4);
