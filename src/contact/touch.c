@@ -461,6 +461,10 @@ static const char *ignored(const void *params) {
     return ((const sk_contact_params *)params)->ignore;
 }
 
+static skein_status check(const void *params, skein_error *error) {
+    return sk_ignored_check(((const sk_contact_params *)params)->ignore, error);
+}
+
 static bool gave_up(sk_force *force) {
     sk_touch *touch = force->state;
     bool tells = touch && touch->given_up && !touch->told;
@@ -493,6 +497,7 @@ static const sk_meeting meeting = {
     .crossings = sk_touch_crossings,
     .touching = sk_touch_touching,
     .ignored = ignored,
+    .check = check,
     .gave_up = gave_up,
     .crowded = crowded,
 };

@@ -65,6 +65,8 @@ typedef struct sk_meeting {
                      skein_surface_contact *out, size_t most, size_t *count);
     /* Pairs of bodies' names that do not meet, "cape:shirt, cape:cape"; "": none. */
     const char *(*ignored)(const void *params);
+    /* Whether such pairs are written as they should be. */
+    skein_status (*check)(const void *params, skein_error *error);
     /* Whether there were too many pairs in some substep, so that it skipped all. True once, for the world's warning. */
     bool (*gave_up)(sk_force *force);
     /* A body that is too thick for its edges, as they were built, in the mean: both in m. NULL: none, or it was told of. */

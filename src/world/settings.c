@@ -139,6 +139,8 @@ static const skein_field *locate(const skein_world *world, skein_handle handle, 
 /* What the object's type says to its parameters as they are; `field` has changed. */
 static skein_status accept(skein_world *world, sk_object *object, const skein_field *field, skein_error *error) {
     skein_status status = SKEIN_OK;
+    if (object->category == SKEIN_FORCE && object->as.force->type->meeting)
+        status = object->as.force->type->meeting->check(object->params, error);
     if (object->category == SKEIN_COLLIDER && object->as.collider->type->check)
         status = object->as.collider->type->check(object->params, error);
     if (object->category == SKEIN_MOTION && object->as.motion->type->check)
