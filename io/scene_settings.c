@@ -41,11 +41,6 @@ const char *io_settings_text(const io_settings *settings, const char *name) {
     return setting ? setting->value.text : NULL;
 }
 
-bool io_settings_off(const io_settings *settings, const char *name) {
-    const skein_setting *setting = find_setting(settings, name);
-    return setting && setting->value.number[0] == 0;
-}
-
 /* ---- values ---- */
 
 int io_field_numbers(const skein_field *field) {

@@ -342,7 +342,7 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
                       "    { 'type': 'flock', 'name': 'a, b', 'count': 2 } ],\n"
                       "  'forces': [ { 'type': 'gravity', 'on': 'cap, worn, nobody' },\n"
                       "    { 'type': 'contact', 'ignore': 'cape:shirt, trousers : clothes' },\n"
-                      "    { 'type': 'gravity', 'on': 'gone', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
+                      "    { 'type': 'gravity', 'on': 'worm', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
                       "    { 'type': 'flocking', 'on': 'a, b', 'neighbours': 'a, cape' } ],\n"
                       "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'on': 'clotehs' }, { 'type': 'mesh', 'mesh': 'no.obj' } ],\n"
                       "  'motions': [ { 'type': 'turn', 'on': 'worn, x' }, { 'type': 'turn', 'colliders': 'ball, bat' } ] }");
@@ -351,12 +351,13 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
              "skein: %s: forces.0.on: there is no body or group of the name 'nobody'\n"
              "skein: %s: forces.1.ignore: there is no body or group of the name 'shirt'\n"
              "skein: %s: forces.1.ignore: there is no body or group of the name 'trousers'\n"
+             "skein: %s: forces.2.on: there is no body or group of the name 'worm'; did you mean 'worn'?\n"
              "skein: %s: forces.4.neighbours: there is no body or group of the name 'a'\n"
              "skein: %s: colliders.0.on: there is no body or group of the name 'clotehs'; did you mean 'clothes'?\n"
              "skein: %s: colliders.1.mesh: %s: cannot read: no such file or directory\n"
              "skein: %s: motions.0.on: there is no body or group of the name 'x'\n"
-             "skein: %s: 8 faults\n", // 'bat' may be the name of what could not be read
-             path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
+             "skein: %s: 9 faults\n", // 'bat' may be the name of what could not be read
+             path, path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
     assert_says(2, "", words, "check", path);
     // with all colliders there
     write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge' } ],\n"
