@@ -316,6 +316,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     bool same = !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
     touch->thickness = thickness;
     touch->usual = usual;
+    touch->less = (real)sk_easing_left(&((const sk_force *)op->rule)->easing, run->time);
     if (!same) sk_calm_forget(touch);
     touch->loaded = false;
     touch->tasks = run->tasks;

@@ -37,6 +37,13 @@ double sk_object_number(const sk_object *object, const char *name) {
     return field ? sk_field_load(field, object->params).number[0] : 0;
 }
 
+void sk_world_ease_meeting(const skein_world *world, const sk_object *object, const char *field, double before) {
+    sk_force *force = object->as.force;
+    if (!force->type->meeting || !world->steps || strcmp(field, "thickness") != 0) return;
+    const double more = sk_object_number(object, field) - before;
+    force->easing = (sk_easing){fmax(0, sk_easing_left(&force->easing, world->time) + more), world->time};
+}
+
 /* Bodies with what they are called, so that rules can tell them apart. */
 static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
     size_t count = 0;
