@@ -681,7 +681,8 @@ static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t
         const uint32_t index = sk_take_u32(r);
         const double less = sk_take_f64(r), since = sk_take_f64(r);
         const sk_object *object = index < world->objects.count ? world->objects.data[index] : NULL;
-        if (r->short_ || index < next || !object || object->category != SKEIN_FORCE || !(less >= 0 && less <= SK_FAR) ||
+        if (r->short_ || index < next || !object || object->category != SKEIN_FORCE ||
+            !object->as.force->type->meeting || !(less >= 0 && less <= SK_FAR) ||
             !(fabs(since) <= SK_FAR))
             return fail_short(error);
         if (apply) object->as.force->easing = (sk_easing){less, since};
