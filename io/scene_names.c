@@ -99,8 +99,6 @@ void io_names_check(io_place place, const skein_world *world, const skein_kind *
     bool ours = skein_kind_find(kind->category, kind->name, &ignored) == kind;
     // a point cache has looked for its one body itself
     bool given = skein_field_find(kind, "file", NULL) != NULL;
-    // a rule that is not enabled may name whom it likes
-    if (kind->category != SKEIN_MOTION && io_settings_off(settings, "enabled")) return;
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         bool bodies = lists[i].names == SKEIN_BODY;
         if (lists[i].of != kind->category || (lists[i].own && !ours)) continue;

@@ -41,11 +41,6 @@ const char *io_settings_text(const io_settings *settings, const char *name) {
     return setting ? setting->value.text : NULL;
 }
 
-bool io_settings_off(const io_settings *settings, const char *name) {
-    const skein_setting *setting = find_setting(settings, name);
-    return setting && setting->value.number[0] == 0;
-}
-
 /* ---- values ---- */
 
 int io_field_numbers(const skein_field *field) {
@@ -78,13 +73,19 @@ static bool takes_names(const skein_kind *kind, const skein_field *field) {
     return !strcmp(field->name, "on") || !strcmp(field->name, "colliders") || !strcmp(field->name, "groups");
 }
 
-/* The names of a list; NULL where one is no text, or has a comma, or there is no memory. */
+/* Whether the item of a list is a name: an empty one would mean nobody, and behind a comma another one begins. */
+static bool is_name(const json_t *item) {
+    const char *text = json_string_value(item);
+    return text && text[strspn(text, " ")] && !strchr(text, ',');
+}
+
+/* The names of a list; NULL where one is no name, or there is no memory. */
 static char *join_names(const json_t *list) {
     size_t length = 1, index;
     json_t *item, *names = (json_t *)(uintptr_t)list; // jansson's getters take no const
     if (!json_is_array(list)) return NULL;
     json_array_foreach(names, index, item) {
-        if (!json_is_string(item) || strchr(json_string_value(item), ',')) return NULL;
+        if (!is_name(item)) return NULL;
         length += json_string_length(item) + 2;
     }
     char *text = calloc(length, 1);
@@ -151,10 +152,22 @@ static bool convert(io_settings *settings, const skein_kind *kind, const skein_f
 static bool is_bad_item(const skein_kind *kind, const skein_field *field, const json_t *list, const json_t *item) {
     size_t count = (size_t)io_field_numbers(field);
     if (count > 1 && json_array_size(list) == count) return !json_is_number(item);
+    if (takes_names(kind, field)) return !is_name(item);
     if (!takes_lists(kind, field)) return false;
     char *joined = json_is_array(item) ? NULL : io_json_join(item);
     free(joined);
     return !joined;
+}
+
+/* Says what an item of a list ought to be. */
+static void report_item(io_place place, const char *name, const skein_kind *kind, const skein_field *field, const json_t *item) {
+    char words[IO_JSON_WORDS_SIZE];
+    bool names = takes_names(kind, field), comma = names && json_is_string(item) && strchr(json_string_value(item), ',');
+    io_fault(place, name, SKEIN_ERROR_VALUE, "expected a %s, not %s%s",
+             names                     ? "name"
+             : takes_lists(kind, field) ? "number or a text"
+                                       : "number",
+             io_json_words(item, words), comma ? ": in a list each name is a text of its own, without commas" : "");
 }
 
 /* Says what the field wants and what it got instead. */
@@ -164,8 +177,7 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     for (size_t i = 0; i < json_array_size(json); i++) {
         if (!is_bad_item(kind, field, json, json_array_get(json, i))) continue;
         snprintf(item, sizeof item, "%s.%zu", name, i);
-        io_fault(place, item, SKEIN_ERROR_VALUE, "expected a number%s, not %s",
-                 takes_lists(kind, field) ? " or a text" : "", io_json_words(json_array_get(json, i), words));
+        report_item(place, item, kind, field, json_array_get(json, i));
         return;
     }
     // the field itself knows what it wants: show it a value that fits none

@@ -42,8 +42,6 @@ bool io_settings_read_one(io_settings *settings, io_place place, const char *nam
                           const skein_kind *kind);
 /* The text of a setting, or NULL. */
 const char *io_settings_text(const io_settings *settings, const char *name);
-/* Whether a setting is there, and false or 0. */
-bool io_settings_off(const io_settings *settings, const char *name);
 void io_settings_free(io_settings *settings);
 
 /* A setting's value from JSON, for any field that takes texts: a list or a shape as one text. NULL if it is

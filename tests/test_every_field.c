@@ -373,7 +373,7 @@ static void make_trial(trial *t, const subject *s, size_t f, const char *method,
 }
 
 /* A field that is set later leads to the same bits as one set at once; a collider that is set elsewhere travels there,
- * unless it is said to have been there. */
+ * unless it is said to have been there, and contact that becomes thicker leads apart slowly, unless time jumps. */
 static void judge_later(const trial *t, const skein_value *from, const skein_value *to, uint64_t ought) {
     skein_handle handle;
     skein_error error;
@@ -392,6 +392,8 @@ static void judge_later(const trial *t, const skein_value *from, const skein_val
     OK(world, skein_world_time_set(world, 0));
     if (skein_set(world, handle, t->field, *to)) assert_true(skein_world_error(world)->message[0]);
     else if (t->s->kind->category == SKEIN_COLLIDER && skein_collider_teleport(world, handle))
+        fail_msg("%s", skein_world_error(world)->message);
+    else if (t->s->kind->category == SKEIN_FORCE && skein_world_time_set(world, 0))
         fail_msg("%s", skein_world_error(world)->message);
     else if (go(world, t->dt, &error) != ought)
         fail_msg("%s.%s under %s: set later it leads elsewhere", t->s->kind->name, t->field, t->method);

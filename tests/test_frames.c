@@ -285,6 +285,8 @@ static void what_is_wrong_is_said(void **state) {
     OK(world, skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_TEXT("jump_times", "1, 2.5 3")), &motion));
     FAILS(world, SKEIN_ERROR_NAME, "no collider of the name 'bull'", skein_set(world, motion, "colliders", skein_text("ball, bull")));
     FAILS(world, SKEIN_ERROR_VALUE, "-1", skein_set(world, motion, "jump_times", skein_text("-1")));
+    FAILS(world, SKEIN_ERROR_VALUE, "1.5 s comes after 4 s", skein_set(world, motion, "jump_times", skein_text("1, 4 1.5")));
+    OK(world, skein_set(world, motion, "jump_times", skein_text("0 1, 1 4")));
     FAILS(world, SKEIN_ERROR_VALUE, "", skein_set(world, motion, "inertia", skein_number(1.5)));
     const double mirror[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1}, nowhere[3] = {0, NAN, 0};
     FAILS(world, SKEIN_ERROR_VALUE, "rotation", skein_body_teleport(world, body, mirror, NULL));

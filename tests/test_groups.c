@@ -453,8 +453,15 @@ static void unknown_names_are_told(void **state) {
         skein_world *world = three_cloths("xpbd", 1);
         add_rule(world, kinds[k], "a, clothse");
         FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?", skein_world_step(world, dt));
+        // a slip in a rule that is not enabled would only be told once it is
+        OK(world, skein_set_path(world, strcmp(kinds[k], "plane") ? "forces.0.enabled" : "colliders.0.enabled", skein_number(0)));
+        FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?", skein_world_step(world, dt));
         skein_world_destroy(world);
     }
+    skein_world *off = three_cloths("xpbd", 1);
+    OK(off, skein_force_add(off, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "a, alnoe"), SKEIN_REAL("enabled", 0)), NULL));
+    FAILS(off, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?", skein_world_step(off, dt));
+    skein_world_destroy(off);
     skein_world *world = three_cloths("xpbd", 1);
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "clothes:alnoe")), NULL));
     FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?", skein_world_step(world, dt));

@@ -132,8 +132,8 @@ static void a_map_has_as_many_numbers_as_particles(void **state) {
     (void)state;
     skein_world *world = led_cloth("xpbd", SKEIN_SETTINGS(SKEIN_REAL("max_distance", 0.1), SKEIN_TEXT("map", "1 1 0.5")), 9.81);
     skein_handle motion = skein_object_at(world, SKEIN_MOTION, 0);
-    FAILS(world, SKEIN_ERROR_VALUE, "3 numbers, and there are 36", skein_world_step(world, dt));
-    FAILS(world, SKEIN_ERROR_VALUE, "map", skein_set(world, motion, "map", skein_text("1 x")));
+    FAILS(world, SKEIN_ERROR_VALUE, "3 numbers, and it leads 36 particles", skein_world_step(world, dt));
+    FAILS(world, SKEIN_ERROR_VALUE, "number 2, 'x': expected numbers", skein_set(world, motion, "map", skein_text("1 x, 2")));
     OK(world, skein_set(world, motion, "map", skein_text("")));
     steps(world, 1, dt);
     skein_world_destroy(world);

@@ -82,7 +82,7 @@ static const struct {
     {"image_missing", ": view.image: tests/bad/scenes/none.png: cannot read: no such file or directory"},
     {"infinite_misspelt",
      ": bodies.0.stretch.stiffness: expected a number in N/m or \"infinite\", not the text 'infinit'"},
-    {"groups_with_a_number", ": bodies.0.groups: expected a text or a list of names, not a list of 2"},
+    {"groups_with_a_number", ": bodies.0.groups.1: expected a name, not the number 2"},
     {"int2_as_number", ": bodies.0.grid: expected two whole numbers, not the number 9"},
     {"int2_negative", ": bodies.0.grid: -3 is out of range: expected from 0 to 65536"},
     {"int2_of_three", ": bodies.0.grid: expected two whole numbers, not a list of 3"},
@@ -342,7 +342,7 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
                       "    { 'type': 'flock', 'name': 'a, b', 'count': 2 } ],\n"
                       "  'forces': [ { 'type': 'gravity', 'on': 'cap, worn, nobody' },\n"
                       "    { 'type': 'contact', 'ignore': 'cape:shirt, trousers : clothes' },\n"
-                      "    { 'type': 'gravity', 'on': 'gone', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
+                      "    { 'type': 'gravity', 'on': 'worm', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
                       "    { 'type': 'flocking', 'on': 'a, b', 'neighbours': 'a, cape' } ],\n"
                       "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'on': 'clotehs' }, { 'type': 'mesh', 'mesh': 'no.obj' } ],\n"
                       "  'motions': [ { 'type': 'turn', 'on': 'worn, x' }, { 'type': 'turn', 'colliders': 'ball, bat' } ] }");
@@ -351,12 +351,13 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
              "skein: %s: forces.0.on: there is no body or group of the name 'nobody'\n"
              "skein: %s: forces.1.ignore: there is no body or group of the name 'shirt'\n"
              "skein: %s: forces.1.ignore: there is no body or group of the name 'trousers'\n"
+             "skein: %s: forces.2.on: there is no body or group of the name 'worm'; did you mean 'worn'?\n"
              "skein: %s: forces.4.neighbours: there is no body or group of the name 'a'\n"
              "skein: %s: colliders.0.on: there is no body or group of the name 'clotehs'; did you mean 'clothes'?\n"
              "skein: %s: colliders.1.mesh: %s: cannot read: no such file or directory\n"
              "skein: %s: motions.0.on: there is no body or group of the name 'x'\n"
-             "skein: %s: 8 faults\n", // 'bat' may be the name of what could not be read
-             path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
+             "skein: %s: 9 faults\n", // 'bat' may be the name of what could not be read
+             path, path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
     assert_says(2, "", words, "check", path);
     // with all colliders there
     write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge' } ],\n"
@@ -374,6 +375,37 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
                       "  'forces': [ { 'type': 'gravity', 'on': 'cape, nobody' } ] }");
     snprintf(words, sizeof words, "skein: %s: bodies.0.grid: expected two whole numbers, not a list of 3\n", path);
     assert_says(2, "", words, "check", path);
+}
+
+/* Texts and lists that could only be slips: each with its place, and what it ought to be. */
+static void slips_in_texts_are_refused(void **state) {
+    (void)state;
+    static const struct {
+        const char *rules, *words;
+    } slips[] = {
+        {"'forces': [ { 'type': 'contact', 'ignore': 'a:' } ]",
+         "forces.0.ignore: 'a:': a name is missing behind the colon: expected two, \"cape:shirt\", or one without a colon for what does not "
+         "meet itself"},
+        {"'forces': [ { 'type': 'gravity', 'on': [''] } ]", "forces.0.on.0: expected a name, not the text ''"},
+        {"'forces': [ { 'type': 'gravity', 'on': ['a', ' '] } ]", "forces.0.on.1: expected a name, not the text ' '"},
+        {"'forces': [ { 'type': 'gravity', 'on': ['a,a'] } ]",
+         "forces.0.on.0: expected a name, not the text 'a,a': in a list each name is a text of its own, without commas"},
+        {"'colliders': [ { 'type': 'plane', 'on': [2] } ]", "colliders.0.on.0: expected a name, not the number 2"},
+        {"'motions': [ { 'type': 'turn', 'colliders': [''] } ]", "motions.0.colliders.0: expected a name, not the text ''"},
+        {"'motions': [ { 'type': 'turn', 'jump_times': [4, 1.5] } ]",
+         "motions.0.jump_times: '4 1.5': 1.5 s comes after 4 s: expected times that rise, such as \"1.5 4\""},
+        {"'motions': [ { 'type': 'turn' }, { 'type': 'turn', 'name': 'm', 'map': '1 none.txt' } ]",
+         "motions.1.map: number 2, 'none.txt': expected numbers, 0 or more, one for each particle"},
+        {"'motions': [ { 'type': 'turn', 'map': [1, 0.5] } ]",
+         "motions.0.map: 2 numbers, and it leads 9 particles, or could: expected one for each"},
+    };
+    char *path = in_folder("slip.json"), words[1024];
+    for (size_t i = 0; i < COUNT(slips); i++) {
+        snprintf(words, sizeof words, "{ 'bodies': [ { 'type': 'cloth', 'name': 'a', 'grid': [3, 3], 'pins': 'top edge' } ], %s }", slips[i].rules);
+        write_scene(path, words);
+        snprintf(words, sizeof words, "skein: %s: %s\n", path, slips[i].words);
+        assert_says(2, "", words, "check", path);
+    }
 }
 
 static void what_is_no_file_is_refused(void **state) {
@@ -464,6 +496,7 @@ int main(void) {
         TEST(a_refusal_leaves_the_folder_as_it_was),
         TEST(all_faults_are_named_in_one_run),
         TEST(all_unknown_names_are_named_in_one_run),
+        TEST(slips_in_texts_are_refused),
         TEST(what_is_no_file_is_refused),
         TEST(a_scene_that_may_not_be_read_is_told),
         TEST(faults_of_sets_are_named),

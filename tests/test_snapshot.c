@@ -341,6 +341,62 @@ static void surfaces_that_are_damaged(void **state) {
     skein_world_destroy(world);
 }
 
+/* ---- a thickness that was raised ---- */
+
+/* Two sheets at rest on each other. */
+static skein_world *with_sheets(double thickness) {
+    skein_world *world = new_world("xpbd", 10);
+    add_gravity(world);
+    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness)), NULL));
+    OK(world, skein_collider_add(world, "plane", NULL, NULL));
+    for (int i = 0; i < 2; i++)
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.01 * i, 0.002 + 0.003 * i, 0)), NULL));
+    return world;
+}
+
+/* Who touches is led apart for a while: a snapshot knows how far that has come, be it taken before the next step, on the way or after
+ * it; and one of another time knows nothing of it. */
+static void thickness_that_was_raised(void **state) {
+    (void)state;
+    static const int frames[] = {0, 3, 200};
+    for (size_t i = 0; i < COUNT(frames); i++) {
+        skein_world *world = with_sheets(0.003), *other = with_sheets(0.003);
+        skein_snapshot_info info;
+        steps(world, 20, dt);
+        snapshot before = take(world);
+        const uint64_t thin = hash_after(world, 3);
+        go_back(world, before);
+        set_number(world, "forces.1.thickness", 0.01);
+        steps(world, frames[i], dt);
+        snapshot s = take(world);
+        assert_int_equal(skein_snapshot_look(s.bytes, s.size, &info, NULL), SKEIN_OK);
+        assert_int_equal(info.version, i < 2 ? 5 : 1);
+        const uint64_t hash = hash_after(world, 3);
+        assert_true(hash != thin);
+        go_back(other, s);
+        assert_true(hash_after(other, 3) == hash);
+        go_back(world, s);
+        assert_true(hash_after(world, 3) == hash);
+        go_back(world, before);
+        assert_true(hash_after(world, 3) == thin);
+        go_back(world, s); // the thickness grows by what is read
+        assert_true(hash_after(world, 3) == hash);
+        // any byte of it may be another
+        size_t refused = 0;
+        for (size_t k = s.size - 24; k < s.size && i < 2; k++)
+            for (int bit = 0; bit < 8; bit++) {
+                s.bytes[k] ^= (unsigned char)(1u << bit);
+                sk_snapshot_seal(s.bytes, s.size);
+                refused += skein_snapshot_read(world, s.bytes, s.size) != SKEIN_OK;
+                s.bytes[k] ^= (unsigned char)(1u << bit);
+            }
+        assert_true(i == 2 || refused > 32 + 29);
+        free(before.bytes), free(s.bytes);
+        skein_world_destroy(world), skein_world_destroy(other);
+    }
+}
+
 /* ---- what is refused ---- */
 
 static void put(snapshot s, size_t at, uint64_t word, size_t bytes) {
@@ -359,7 +415,7 @@ static void heads(void **state) {
     assert_int_equal(info.real_size, sizeof(skein_real));
     assert_int_equal(info.particles, skein_particle_count(world));
     put(s, 8, SK_SNAPSHOT_VERSION + 1, 4);
-    FAILS(world, SKEIN_ERROR_LIMIT, "a snapshot of version 5", skein_snapshot_read(world, s.bytes, s.size));
+    FAILS(world, SKEIN_ERROR_LIMIT, "a snapshot of version 6", skein_snapshot_read(world, s.bytes, s.size));
     put(s, 8, 1, 4);
     put(s, 12, 12 - sizeof(skein_real), 4);
     FAILS(world, SKEIN_ERROR_VALUE, "take the other build", skein_snapshot_read(world, s.bytes, s.size));
@@ -456,6 +512,7 @@ int main(void) {
         cmocka_unit_test(vertices_that_are_led),
         cmocka_unit_test(surfaces_that_are_damaged),
         cmocka_unit_test(seats_are_where_all_was_built),
+        cmocka_unit_test(thickness_that_was_raised),
         cmocka_unit_test(heads),
         cmocka_unit_test(other_worlds),
         cmocka_unit_test(claims),

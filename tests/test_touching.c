@@ -450,6 +450,51 @@ static void it_acts_on_whom_it_names(void **state) {
     }
 }
 
+/* A pile of sheets at rest, one thickness above each other, that is told a larger one. */
+enum { PILE = 4, PILE_SIDE = 12, OF_ONE = PILE_SIDE * PILE_SIDE };
+static skein_world *new_pile(const char *method, double thickness) {
+    skein_world *world = new_world(method, 10);
+    add_gravity(world);
+    add_ground(world);
+    for (int i = 0; i < PILE; i++)
+        add_sheet(world, PILE_SIDE, 0.6, (vec3){0.003 * i, 0.004 + 1.02 * i * thickness, 0.002 * i}, (vec3){0, 0, 0});
+    add_touching(world, thickness, 0.3);
+    steps(world, 60, step_length);
+    return world;
+}
+
+/* What lies on each other is led apart and not thrown: each gap by no more than the speed that falls by 0.1 m/s2 until it is done, and
+ * nobody is ever above where he comes to lie. */
+static void a_pile_that_thickens_is_led_apart(void **state) {
+    (void)state;
+    static const char *const methods[] = {"xpbd", "backward_euler"};
+    const double before = 0.002, after = 0.01, fastest = sqrt(2 * 0.1 * (after - before));
+    for (size_t m = 0; m < COUNT(methods); m++) {
+        skein_world *world = new_pile(methods[m], before);
+        skein_handle rule = skein_object_at(world, SKEIN_FORCE, 1);
+        OK(world, skein_set(world, rule, "thickness", skein_number(after)));
+        double most = 0, highest = 0;
+        for (int frame = 0; frame < 60; frame++) {
+            steps(world, 1, step_length);
+            for (size_t p = 0; p < PILE * OF_ONE; p++) {
+                most = fmax(most, length3(velocity_of(world, p)));
+                highest = fmax(highest, position_of(world, p).y);
+            }
+            assert_int_equal(statistics_of(world).crossings, 0);
+        }
+        assert_true(most < 2 * (PILE - 1) * fastest); // 2: gaps that are led apart one after the other share what is missing unevenly
+        assert_true(highest < 0.004 + (PILE - 1) * after + 0.001);
+        for (size_t i = 1; i < PILE; i++)
+            assert_near(mean_height(world, i * OF_ONE, OF_ONE) - mean_height(world, (i - 1) * OF_ONE, OF_ONE), after, 5e-4);
+        assert_under(statistics_of(world).kinetic_energy, 1e-5);
+        // a smaller one is so at once, and what has come to lie is not led back
+        OK(world, skein_set(world, rule, "thickness", skein_number(before)));
+        steps(world, 60, step_length);
+        assert_near(mean_height(world, (PILE - 1) * OF_ONE, OF_ONE), 0.004 + (PILE - 1) * before, 1e-3);
+        skein_world_destroy(world);
+    }
+}
+
 typedef struct heard {
     int warnings;
     char last[300];
@@ -493,6 +538,7 @@ int main(void) {
                 cmocka_unit_test(what_touches_nothing_is_free),
         cmocka_unit_test(a_moving_frame_changes_nothing), cmocka_unit_test(fast_things_do_not_pass),
         cmocka_unit_test(it_acts_on_whom_it_names),       cmocka_unit_test(giving_up_is_told),
+        cmocka_unit_test(a_pile_that_thickens_is_led_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -119,9 +119,38 @@ static void names_that_are_not_there_are_said(void **state) {
     skein_world_destroy(world);
 }
 
+/* A pair without one of its names says nothing, and is refused where it is said. */
+static void pairs_have_two_names(void **state) {
+    (void)state;
+    static const struct {
+        const char *ignore, *words;
+    } wrong[] = {
+        {"low:", "'low:': a name is missing behind the colon"},
+        {"low, :high", "':high': a name is missing before the colon"},
+        {" : ,low", "':': a name is missing before the colon"},
+        {"low:high: low", "'low:high: low': expected two names"},
+    };
+    skein_world *world = two_sheets("low:high,", 0.03);
+    skein_handle rule = skein_object_at(world, SKEIN_FORCE, 1);
+    for (size_t i = 0; i < COUNT(wrong); i++) {
+        const size_t rules = skein_object_count(world, SKEIN_FORCE);
+        skein_value kept;
+        FAILS(world, SKEIN_ERROR_VALUE, wrong[i].words, skein_set(world, rule, "ignore", skein_text(wrong[i].ignore)));
+        OK(world, skein_get(world, rule, "ignore", &kept));
+        assert_string_equal(kept.text, "low:high,");
+        FAILS(world, SKEIN_ERROR_VALUE, wrong[i].words,
+              skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", wrong[i].ignore)), NULL));
+        assert_string_equal(skein_world_error(world)->where, "ignore");
+        assert_int_equal(skein_object_count(world, SKEIN_FORCE), rules);
+    }
+    steps(world, 1, dt);
+    skein_world_destroy(world);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {
         cmocka_unit_test(contacts_are_as_the_places_say), cmocka_unit_test(asking_changes_nothing),
-        cmocka_unit_test(who_is_ignored_is_not_met), cmocka_unit_test(names_that_are_not_there_are_said)};
+        cmocka_unit_test(who_is_ignored_is_not_met), cmocka_unit_test(names_that_are_not_there_are_said),
+        cmocka_unit_test(pairs_have_two_names)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -37,8 +37,9 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
     const sk_contact_params *params = ((const sk_force *)op->rule)->params;
     const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
     const size_t k = entry / 2;
-    const real h = (real)op->dt, distance = pairs->distance[k], thickness = pairs->thickness[k];
+    const real h = (real)op->dt, distance = pairs->distance[k];
     const uint32_t v[4] = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]};
+    const real thickness = sk_pair_goal(touch, v[0], v[2], pairs->thickness[k], distance);
     real resist = 0;
     if (distance < SK_NO_GAP * touch->thickness) touch->tangle.forced = true; // rounding chooses its side
     sk_weights_of(pairs, sort, k, press->weight);

@@ -17,7 +17,8 @@ static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k,
     sk_weights_of(near, sort, k, weight);
     sk_quad apart = sk_quad_sum(q, v, weight), n = {near->normal[0][k], near->normal[1][k], near->normal[2][k], 0};
     // what has come too near in some other way gets its thickness back over some substeps, not as a blow
-    real wanted = sk_min(near->thickness[k], near->distance[k] + gain), missing = wanted - dot_of(n, apart);
+    real goal = sk_pair_goal(touch, v[0], v[2], near->thickness[k], near->distance[k]);
+    real wanted = sk_min(goal, near->distance[k] + gain), missing = wanted - dot_of(n, apart);
     if (!(missing > 0)) return; // as of most
     for (int c = 0; c < 4; c++) resist += weight[c] * weight[c] * touch->inverse[v[c]];
     if (!(resist > 0)) return;

@@ -72,6 +72,8 @@ bool sk_leaves_deal(uint32_t *partner, uint32_t *order, sk_allocator *allocator,
  * no memory. */
 bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin *skin, const char *text,
                      const sk_meeting_parts *parts);
+/* Whether a text is pairs of names, with commas between them. */
+skein_status sk_ignored_check(const char *text, skein_error *error);
 void sk_ignored_release(sk_ignored *ignored, sk_allocator *allocator);
 static inline bool sk_is_ignored(const sk_ignored *ignored, uint32_t a, uint32_t b) {
     return ignored->any && ignored->pair[(size_t)ignored->of_leaf[a] * ignored->width + ignored->of_leaf[b]];

@@ -316,6 +316,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     bool same = !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
     touch->thickness = thickness;
     touch->usual = usual;
+    touch->less = (real)sk_easing_left(&((const sk_force *)op->rule)->easing, run->time);
     if (!same) sk_calm_forget(touch);
     touch->loaded = false;
     touch->tasks = run->tasks;
@@ -461,6 +462,10 @@ static const char *ignored(const void *params) {
     return ((const sk_contact_params *)params)->ignore;
 }
 
+static skein_status check(const void *params, skein_error *error) {
+    return sk_ignored_check(((const sk_contact_params *)params)->ignore, error);
+}
+
 static bool gave_up(sk_force *force) {
     sk_touch *touch = force->state;
     bool tells = touch && touch->given_up && !touch->told;
@@ -494,6 +499,7 @@ static const sk_meeting meeting = {
     .crossings = sk_touch_crossings,
     .touching = sk_touch_touching,
     .ignored = ignored,
+    .check = check,
     .gave_up = gave_up,
     .crowded = crowded,
 };

@@ -2,7 +2,8 @@
  *
  *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
  *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a twentieth are near
- *   push    each of these, in a fixed order, is brought to its thickness, with friction; or in an implicit solve presses (press.c)
+ *   push    each of these, in a fixed order, is brought to its thickness, with friction; or in an implicit solve presses (press.c);
+ *           where that was raised in the midst of a run, slowly (sk_easing)
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
  * A pair is a vertex and a triangle, or two edges; they have no corner in common, and their bodies are no pair to be
@@ -94,7 +95,8 @@ typedef struct sk_touch {
     bool still;      /* they are those of a substep's ways, all of them */
     bool aimed;      /* `at` and `in_the_end` are those of this substep's ways */
     real thickness;  /* that pairs were found for, m: the largest of any pair; */
-    real usual;      /* and the rule's, of bodies that have none of their own */
+    real usual;      /* and the rule's, of bodies that have none of their own; */
+    real less;       /* and so much nearer surfaces may be for now, where that was raised (sk_easing) */
     real now, until; /* substeps since the last search for all, and how long that holds */
     uint64_t clock;  /* substeps in all */
     size_t storm, next_storm; /* substeps that are left in which nobody has a course; and of the next such time */
@@ -199,6 +201,16 @@ static inline real sk_pair_thickness(const sk_touch *touch, uint32_t a, uint32_t
     real first = skin->thickness[a] > 0 ? skin->thickness[a] : touch->usual;
     real second = skin->thickness[b] > 0 ? skin->thickness[b] : touch->usual;
     return (real)0.5 * (first + second);
+}
+
+/* How far a pair that is `distance` apart is led to: to its thickness, or, while that is eased, to what of it there is by now; who is
+ * farther apart stays so. */
+static inline real sk_pair_goal(const sk_touch *touch, uint32_t a, uint32_t b, real thickness, real distance) {
+    if (!(touch->less > 0)) return thickness;
+    const sk_skin *skin = &touch->skin;
+    const bool own[2] = {skin->thickest > 0 && skin->thickness[a] > 0, skin->thickest > 0 && skin->thickness[b] > 0};
+    const real less = touch->less * (real)0.5 * (real)(2 - own[0] - own[1]);
+    return sk_min(thickness, sk_max(sk_pair_thickness(touch, a, b) - less, distance));
 }
 
 /* Of the same: the mean of both. */

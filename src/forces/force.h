@@ -5,6 +5,8 @@
 #ifndef SK_FORCES_FORCE_H
 #define SK_FORCES_FORCE_H
 
+#include <math.h>
+
 #include "base/fields.h"
 #include "formula/parameters.h"
 #include "particles/particles.h"
@@ -65,6 +67,8 @@ typedef struct sk_meeting {
                      skein_surface_contact *out, size_t most, size_t *count);
     /* Pairs of bodies' names that do not meet, "cape:shirt, cape:cape"; "": none. */
     const char *(*ignored)(const void *params);
+    /* Whether such pairs are written as they should be. */
+    skein_status (*check)(const void *params, skein_error *error);
     /* Whether there were too many pairs in some substep, so that it skipped all. True once, for the world's warning. */
     bool (*gave_up)(sk_force *force);
     /* A body that is too thick for its edges, as they were built, in the mean: both in m. NULL: none, or it was told of. */
@@ -135,6 +139,19 @@ typedef struct sk_force_type {
 } sk_force_type;
 
 /* A force as methods see it: a type with its parameters. An op's rule is one of these. */
+/* Of a rule that meets, where its thickness was raised: by how much nearer surfaces may be at first, and since when. What lies on each
+ * other is led apart, the slower the less is left of it: by a speed that falls by a hundredth of what gravity takes, so that nothing
+ * is thrown, and piles of dozens of layers stay together. */
+typedef struct sk_easing {
+    double less, since; /* m, s */
+} sk_easing;
+/* How much of it is left at a time, m. */
+static inline double sk_easing_left(const sk_easing *easing, double time) {
+    const double slowing = 0.1; // m/s2
+    const double root = sqrt(easing->less) - sqrt(0.5 * slowing) * fmax(0, time - easing->since);
+    return root > 0 ? root * root : 0;
+}
+
 struct sk_force {
     const sk_force_type *type;
     const void *params;
@@ -144,6 +161,7 @@ struct sk_force {
     sk_only only;         /* those bodies, found when a plan is written */
     sk_group moved, seen; /* of a rule that steers or bounds: the particles that it moves and that it reads */
     void *state;          /* of a rule of contact between surfaces: what its ops keep */
+    sk_easing easing;     /* of the same */
 };
 
 bool sk_force_on_velocity(const sk_force *force);

@@ -74,19 +74,27 @@ bool sk_motion_jumps(const sk_motion_common *common, double from, double to) {
 }
 
 skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error) {
-    double time = 0;
+    double time = 0, before = 0;
     bool wrong = false;
-    for (const char *at = common->jump_times; at;) at = next_time(at, &time, &wrong);
+    for (const char *at = common->jump_times; (at = next_time(at, &time, &wrong)); before = time)
+        if (time < before)
+            return sk_fail(error, SKEIN_ERROR_VALUE, "jump_times",
+                           "'%.60s': %g s comes after %g s: expected times that rise, such as \"1.5 4\"", common->jump_times, time, before);
     if (!wrong) return SKEIN_OK;
     return sk_fail(error, SKEIN_ERROR_VALUE, "jump_times", "'%.60s': expected times in seconds, 0 or more, such as \"1.5 4\"",
                    common->jump_times);
 }
 
-int64_t sk_motion_read_map(const sk_motion_common *common, double *share, size_t most) {
-    int64_t count = 0;
+skein_status sk_motion_read_map(const sk_motion_common *common, double *share, size_t most, size_t *count, skein_error *error) {
     double number = 0;
     bool wrong = false;
-    for (const char *at = common->map; (at = next_time(at, &number, &wrong)); count++)
-        if ((size_t)count < most) share[count] = number;
-    return wrong ? -1 : count;
+    const char *rest = common->map;
+    *count = 0;
+    for (const char *at; (at = next_time(rest, &number, &wrong)); rest = at, ++*count)
+        if (*count < most) share[*count] = number;
+    if (!wrong) return SKEIN_OK;
+    while (isspace((unsigned char)*rest) || *rest == ',') rest++;
+    size_t length = strcspn(rest, ", \t\r\n");
+    return sk_fail(error, SKEIN_ERROR_VALUE, "map", "number %zu, '%.*s': expected numbers, 0 or more, one for each particle",
+                   *count + 1, (int)(length < 60 ? length : 60), rest);
 }

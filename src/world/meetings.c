@@ -37,6 +37,13 @@ double sk_object_number(const sk_object *object, const char *name) {
     return field ? sk_field_load(field, object->params).number[0] : 0;
 }
 
+void sk_world_ease_meeting(const skein_world *world, const sk_object *object, const char *field, double before) {
+    sk_force *force = object->as.force;
+    if (!force->type->meeting || !world->steps || strcmp(field, "thickness") != 0) return;
+    const double more = sk_object_number(object, field) - before;
+    force->easing = (sk_easing){fmax(0, sk_easing_left(&force->easing, world->time) + more), world->time};
+}
+
 /* Bodies with what they are called, so that rules can tell them apart. */
 static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
     size_t count = 0;
@@ -51,11 +58,11 @@ static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
     return count;
 }
 
-/* Each name in the pairs that rules ignore is a body's or a group's, or was. */
+/* Each name in the pairs that rules ignore is a body's or a group's, or was; in those of rules that are not enabled, too. */
 static skein_status check_ignored(const skein_world *world, skein_error *error) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         const sk_force *force = world->rules.forces.data[i];
-        if (!*force->enabled || !force->type->meeting) continue;
+        if (!force->type->meeting) continue;
         const char *text = force->type->meeting->ignored(force->params);
         skein_status status = SKEIN_OK;
         for (sk_word name; !status && (name = sk_names_next(&text, ",:")).length;)
@@ -111,11 +118,10 @@ static void tell_of_crowded(skein_world *world, const sk_meeting_parts *parts) {
 }
 
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error) {
-    size_t rules = count_those_that_meet(world);
-    if (!rules) return SKEIN_OK;
-    meeting_lists lists;
     skein_status status = check_ignored(world, error);
-    if (status) return status;
+    size_t rules = count_those_that_meet(world);
+    if (status || !rules) return status;
+    meeting_lists lists;
     bool good = list_parts(world, rules, &lists);
     if (!good) return sk_fail_memory(error, "contact");
     for (size_t i = 0; i < world->rules.forces.count && good; i++) {

@@ -280,8 +280,8 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
     if (!status) status = find_carrier(world, motion, &carrier, &offset, error);
     if (!status && motion->type->carrier) status = refuse_frame(motion, error);
     if (!status) status = find_colliders(world, &asked, error);
-    if (!status && sk_motion_read_map(motion->common, NULL, 0) < 0)
-        status = sk_fail(error, SKEIN_ERROR_VALUE, "map", "expected numbers, 0 or more");
+    size_t shares;
+    if (!status) status = sk_motion_read_map(motion->common, NULL, 0, &shares, error);
     if (status || !pins[0]) return status;
     size_t first, count;
     find_range(world, on, &first, &count);
@@ -298,12 +298,14 @@ static skein_status find_map(skein_world *world, sk_motion *motion, skein_error 
     if (!motion->common->map[0]) return SKEIN_OK;
     motion->share = sk_allocate(&world->allocator, (motion->count + 1) * sizeof *motion->share);
     if (!motion->share) return sk_fail_memory(error, "a motion's map");
-    int64_t count = sk_motion_read_map(motion->common, motion->share, motion->count);
-    if (count == (int64_t)motion->count) return SKEIN_OK;
+    size_t count;
+    skein_status status = sk_motion_read_map(motion->common, motion->share, motion->count, &count, error);
+    if (!status && count == motion->count) return SKEIN_OK;
     sk_release(&world->allocator, motion->share);
     motion->share = NULL;
-    if (count < 0) return sk_fail(error, SKEIN_ERROR_VALUE, motion->label, "map: expected numbers, 0 or more");
-    return sk_fail(error, SKEIN_ERROR_VALUE, motion->label, "map: %zu numbers, and there are %zu particles", (size_t)count, motion->count);
+    if (status) return status;
+    return sk_fail(error, SKEIN_ERROR_VALUE, "map", "%zu numbers, and it leads %zu particles, or could: expected one for each", count,
+                   motion->count);
 }
 
 static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
@@ -344,7 +346,7 @@ void sk_world_seat_all(skein_world *world) {
 
 /* Whether it is one of the fields that are looked at here. */
 static bool names_field(const char *where) {
-    static const char *const fields[] = {"pins", "to", "colliders", "inertia", "jump", "jump_turn", "jump_times"};
+    static const char *const fields[] = {"pins", "to", "colliders", "inertia", "jump", "jump_turn", "jump_times", "map"};
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (!strcmp(where, fields[i])) return true;
     return false;

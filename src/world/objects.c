@@ -151,6 +151,10 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
     sk_object *object;
     skein_status status = make_object(world, &type->kind, type->making, settings, &object, error);
     if (status) return status;
+    if (type->meeting && (status = type->meeting->check(object->params, error))) {
+        unmake_object(world, object);
+        return status;
+    }
     sk_force *force = SK_RESERVE(&world->allocator, &world->rules.forces, world->rules.forces.count + 1)
                           ? sk_allocate(&world->allocator, sizeof *force)
                           : NULL;

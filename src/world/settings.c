@@ -139,6 +139,8 @@ static const skein_field *locate(const skein_world *world, skein_handle handle, 
 /* What the object's type says to its parameters as they are; `field` has changed. */
 static skein_status accept(skein_world *world, sk_object *object, const skein_field *field, skein_error *error) {
     skein_status status = SKEIN_OK;
+    if (object->category == SKEIN_FORCE && object->as.force->type->meeting)
+        status = object->as.force->type->meeting->check(object->params, error);
     if (object->category == SKEIN_COLLIDER && object->as.collider->type->check)
         status = object->as.collider->type->check(object->params, error);
     if (object->category == SKEIN_MOTION && object->as.motion->type->check)
@@ -254,6 +256,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         const char *given = sk_field_load(field, params).text;
         sk_label_copy(object->label, sizeof object->label, given[0] ? given : object->kind->name);
     }
+    if (!same && object && object->category == SKEIN_FORCE) sk_world_ease_meeting(world, object, name, before.number[0]);
     if (!same) rouse(world, object, name, place);
     else if (object && object->category == SKEIN_BODY) sk_world_rouse_at(world, object->as.body->first_particle, object->as.body->particle_count);
     world->plan_stale = true;

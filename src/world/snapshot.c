@@ -12,6 +12,8 @@
  *              whether all are to wake
  *   surfaces   from version 4 on: of how many colliders a program leads the vertices, and of each its place among the objects, where
  *              they are, and where they are to go in the next step
+ *   easings    from version 5 on: of how many rules of contact a thickness that was raised is still eased, and of each its place among
+ *              the objects, by how much it was raised, and when
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
@@ -253,6 +255,26 @@ static void put_surfaces(sk_byte_writer *w, const skein_world *world) {
     }
 }
 
+static bool is_eased(const skein_world *world, const sk_object *object) {
+    return object->category == SKEIN_FORCE && sk_easing_left(&object->as.force->easing, world->time) > 0;
+}
+
+static uint32_t count_eased(const skein_world *world) {
+    uint32_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) count += is_eased(world, world->objects.data[i]);
+    return count;
+}
+
+static void put_easings(sk_byte_writer *w, const skein_world *world) {
+    sk_put_u32(w, count_eased(world));
+    for (size_t i = 0; i < world->objects.count; i++) {
+        if (!is_eased(world, world->objects.data[i])) continue;
+        const sk_easing *easing = &world->objects.data[i]->as.force->easing;
+        sk_put_u32(w, (uint32_t)i);
+        sk_put_f64(w, easing->less), sk_put_f64(w, easing->since);
+    }
+}
+
 /* As it is written: 0, here; 1, aside; 2, gone; those asleep are among the rests. */
 static unsigned presence_of(const skein_world *world, size_t particle) {
     const unsigned presence = world->particles.presence[particle];
@@ -260,10 +282,10 @@ static unsigned presence_of(const skein_world *world, size_t particle) {
 }
 
 static void put_all(sk_byte_writer *w, const skein_world *world) {
-    const bool any_led = count_led(world) > 0, any_rests = any_led || count_resting(world) > 0;
+    const bool any_eased = count_eased(world) > 0, any_led = any_eased || count_led(world) > 0, any_rests = any_led || count_resting(world) > 0;
     const bool any_cut = any_rests || count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
-    sk_put_u32(w, any_led ? SK_SNAPSHOT_VERSION : any_rests ? 3 : any_cut ? 2 : 1);
+    sk_put_u32(w, any_eased ? SK_SNAPSHOT_VERSION : any_led ? 4 : any_rests ? 3 : any_cut ? 2 : 1);
     sk_put_u32(w, sizeof(real));
     sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
     put_clock(w, world);
@@ -290,6 +312,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     if (any_cut) put_cuts(w, world);
     if (any_rests) put_rests(w, world);
     if (any_led) put_surfaces(w, world);
+    if (any_eased) put_easings(w, world);
 }
 
 void sk_snapshot_seal(unsigned char *bytes, size_t size) {
@@ -646,6 +669,25 @@ static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_
         if (status) return status;
         next = index + 1;
     }
+    return r->short_ ? fail_short(error) : SKEIN_OK;
+}
+
+/* What was raised by the fields that have been read is so at once, unless the snapshot says otherwise. */
+static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+    const uint32_t count = version > 4 ? sk_take_u32(r) : 0;
+    uint32_t next = 0;
+    for (size_t i = 0; i < world->rules.forces.count && apply; i++) world->rules.forces.data[i]->easing = (sk_easing){0, 0};
+    for (uint32_t i = 0; i < count && !r->short_; i++) {
+        const uint32_t index = sk_take_u32(r);
+        const double less = sk_take_f64(r), since = sk_take_f64(r);
+        const sk_object *object = index < world->objects.count ? world->objects.data[index] : NULL;
+        if (r->short_ || index < next || !object || object->category != SKEIN_FORCE ||
+            !object->as.force->type->meeting || !(less >= 0 && less <= SK_FAR) ||
+            !(fabs(since) <= SK_FAR))
+            return fail_short(error);
+        if (apply) object->as.force->easing = (sk_easing){less, since};
+        next = index + 1;
+    }
     return r->short_ || sk_left(r) ? fail_short(error) : SKEIN_OK;
 }
 
@@ -660,7 +702,8 @@ static skein_status walk(skein_world *world, const void *bytes, const skein_snap
     if (!status) status = take_pins(&r, world, apply, error);
     if (!status) status = take_cuts(&r, world, info->version, apply, error);
     if (!status) status = take_rests(&r, world, info->version, apply, error);
-    return status ? status : take_surfaces(&r, world, info->version, apply, error);
+    if (!status) status = take_surfaces(&r, world, info->version, apply, error);
+    return status ? status : take_easings(&r, world, info->version, apply, error);
 }
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {

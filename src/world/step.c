@@ -314,9 +314,10 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     return status;
 }
 
-/* Where time jumps, nothing is on its way. */
-static void stop_colliders(skein_world *world) {
+/* Where time jumps, nothing is on its way: neither colliders, nor who is led apart. */
+static void stop_what_moves(skein_world *world) {
     for (size_t i = 0; i < world->rules.colliders.count; i++) sk_collider_stop(world->rules.colliders.data[i]);
+    for (size_t i = 0; i < world->rules.forces.count; i++) world->rules.forces.data[i]->easing = (sk_easing){0, 0};
 }
 
 skein_status skein_world_reset(skein_world *world) {
@@ -329,7 +330,7 @@ skein_status skein_world_reset(skein_world *world) {
     for (size_t i = 0; i < world->objects.count; i++)
         if (world->objects.data[i]->category == SKEIN_BODY) sk_cut_set(world, world->objects.data[i]->as.body, NULL);
     world->pins.count = 0;
-    stop_colliders(world);
+    stop_what_moves(world);
     world->time = 0;
     sk_world_place_colliders(world);
     world->steps = world->substeps = world->unsolved = world->solver_failures = 0;
@@ -346,7 +347,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
     if (!(seconds >= 0) || !(seconds <= SK_FAR))
         return sk_fail(sk_world_error(world), SKEIN_ERROR_VALUE, "seconds", "a time of %g s: expected 0 to 1e15",
                        seconds);
-    stop_colliders(world);
+    stop_what_moves(world);
     sk_world_rouse(world);
     world->time = seconds;
     sk_world_place_colliders(world);

@@ -179,8 +179,25 @@ static skein_status find_force(skein_world *world, sk_force *force, skein_error 
     return status;
 }
 
-skein_status sk_world_find_whom(skein_world *world, skein_error *error) {
+/* A name that nobody has is a slip in rules that are not enabled, too: it would only be told once they are. */
+static skein_status check_disabled(const skein_world *world, skein_error *error) {
     skein_status status = SKEIN_OK;
+    for (size_t i = 0; i < world->rules.colliders.count && !status; i++) {
+        const sk_collider *collider = world->rules.colliders.data[i];
+        if (!collider->common->enabled) status = sk_world_check_names(world, collider->label, collider->common->on, error);
+    }
+    for (size_t i = 0; i < world->rules.forces.count && !status; i++) {
+        const sk_force *force = world->rules.forces.data[i];
+        if (*force->enabled) continue;
+        status = sk_world_check_names(world, force->label, *force->on, error);
+        if (!status && force->type->neighbours)
+            status = sk_world_check_names(world, force->label, force->type->neighbours(force->params), error);
+    }
+    return status;
+}
+
+skein_status sk_world_find_whom(skein_world *world, skein_error *error) {
+    skein_status status = check_disabled(world, error);
     world->everybody = everybody(world);
     for (size_t i = 0; i < world->rules.colliders.count && !status; i++) {
         sk_collider *collider = world->rules.colliders.data[i];

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/names.h"
+#include "base/status.h"
 #include "contact/touch.h"
 
 static sk_word trimmed(const char *at, const char *end) {
@@ -22,6 +23,25 @@ static bool next_pair(const char **text, sk_word pair[2]) {
     pair[1] = colon ? trimmed(colon + 1, end) : pair[0];
     *text = end + (*end == ',');
     return true;
+}
+
+skein_status sk_ignored_check(const char *text, skein_error *error) {
+    sk_word pair[2];
+    for (const char *at = text, *next = text; next_pair(&next, pair); at = next) {
+        sk_word whole = trimmed(at, at + strcspn(at, ","));
+        const char *colon = memchr(whole.at, ':', whole.length);
+        if (!colon) continue;
+        int length = whole.length < 60 ? (int)whole.length : 60;
+        if (memchr(pair[1].at, ':', pair[1].length))
+            return sk_fail(error, SKEIN_ERROR_VALUE, "ignore", "'%.*s': expected two names, \"cape:shirt\"; between pairs is a comma", length, whole.at);
+        for (int k = 0; k < 2; k++)
+            if (!pair[k].length)
+                return sk_fail(error, SKEIN_ERROR_VALUE, "ignore",
+                               "'%.*s': a name is missing %s the colon: expected two, \"cape:shirt\", or one without a colon for "
+                               "what does not meet itself",
+                               length, whole.at, k ? "behind" : "before");
+    }
+    return SKEIN_OK;
 }
 
 static size_t count_pairs(const char *text) {
