@@ -104,9 +104,9 @@ struct sk_batch {
     const char *label;
     const bool *enabled;
     const double *bound; /* on the relative violation, enforced by limit ops; NULL: none */
-    const double *tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing is enforced, those
-                           * that only too few sweeps can have left stretched are swept more (world/strained.c); NULL: never */
-    bool strained;       /* when the present step began some were near their bound, or beyond it; or are to be swept more */
+    const double *tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing limits them,
+                           * those that only too few sweeps can have left stretched are taken back (world/strained.c); NULL: never */
+    bool strained;       /* when the present step began some were near their bound, or beyond it */
     bool only_bounds;    /* it only bounds: it does not pull, and is not counted */
     double quickness;    /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
                             square of its angular frequency. If low for the substep, position methods may project the
@@ -155,8 +155,10 @@ sk_batch *sk_batch_create(sk_allocator *allocator, const sk_constraint_type *typ
 bool sk_batch_is_on(const sk_batch *batch);
 /* Whether it acts and pulls: exerts forces, or is projected. */
 bool sk_batch_pulls(const sk_batch *batch);
-/* Whether it is of edges that are meant to be firm, and that nothing limits. */
+/* Whether it is of edges that are meant to be firm, and that nothing limits; and what limit ops take them back to, where nothing limits
+ * them, or else its bound. */
 bool sk_batch_is_firm(const sk_batch *batch);
+double sk_batch_bound(const sk_batch *batch);
 /* Whether it pulls, or would if it did not sleep: it holds energy. */
 bool sk_batch_is_loaded(const sk_batch *batch);
 /* Leaves out the elements of particles that take no part (for good if they are gone), and restores those whose

@@ -31,7 +31,7 @@ static inline sk_element_constants sk_element_prepare(const sk_batch *batch, con
                                   (real)(op->coefficient[0] / (dt * dt)),
                                   (real)(damping_time / dt),
                                   (real)op->dt,
-                                  (real)(batch->bound ? *batch->bound : 0),
+                                  (real)sk_batch_bound(batch),
                                   (real)op->coefficient[0],
                                   (real)op->coefficient[0] + (real)(op->coefficient[1] * damping_time)};
 }

@@ -1,12 +1,10 @@
-/* Whether edges are stretched when a step begins, batch by batch, by the positions alone: then they are swept over and over in each of its
- * substeps (methods/plan_builder_correct.c).
+/* Whether edges are near their bound when a step begins, batch by batch, by the positions alone: then the bound is swept over and over in each
+ * of its substeps (methods/plan_builder_correct.c); else once is enough, or not at all, which costs a fifth of that. What hangs by an edge, or
+ * by two corners, is held by its tethers, and far from its bound.
  *
- * Of edges with a strain bound, whether any is near it; else one sweep is enough, which costs a fifth of that. What hangs by an edge, or by
- * two corners, is held by its tethers, and far from its bound.
- *
- * Of a sheet's edges without one, whether any has a twentieth that is not its own: a substep would undo it at once, for it is stiff, did not
- * what hangs from it pull on it again. So many sheets lie over the corners of boxes: a few vertices bear all. What is soft stretches as it
- * is meant to. */
+ * A sheet's edges that nothing limits are firm all the same, if they are stiff: a substep would undo a stretch of a twentieth at once, did not
+ * what hangs from them pull on them again. So sheets lie over the corners of boxes, where a few vertices bear all. What is soft stretches as
+ * it is meant to. */
 #include "base/kernels.h"
 #include "world/world.h"
 #define SK_UNIT strained
@@ -39,8 +37,6 @@ static sk_longer_kernel *const longer_kernel[SK_ISA_COUNT] = SK_EACH_ISA(longer)
 
 enum { SOME = 256 };
 
-/* Of what nothing limits. */
-static const real most_of_its_own = (real)0.05;
 /* A projection leaves 1 / (1 + K) of a strain, K = k h^2 sum w |grad C|^2: an edge that is stiff has more. */
 static const double least_stiff = 30;
 
@@ -51,8 +47,10 @@ static double stiffness_in_substep(const sk_batch *batch, const sk_vec4 *x, size
     return ((const sk_material *)batch->params)->stiffness * scale * h * h * ((double)x[slot[0]].w + (double)x[slot[1]].w);
 }
 
-/* Whether any is beyond this; where no bound says how far, of those that are stiff. */
-static bool is_strained(const sk_batch *batch, sk_isa isa, const sk_vec4 *x, real most, bool bounded, double h) {
+/* Whether any is beyond half its bound; where nobody has set that, of those that are stiff. Sweeps leave alone what is within, so that who
+ * was swept by them in one step is so in the next. (Where they were projections, and had done with what had called for them, sheets shook.) */
+static bool is_strained(const sk_batch *batch, sk_isa isa, const sk_vec4 *x, bool limited, double h) {
+    const real most = (real)(0.5 * sk_batch_bound(batch));
     const uint32_t(*ends)[2] = (const uint32_t(*)[2])batch->slot;
     if (batch->type == &sk_distance && !longer_kernel[isa](x, ends, batch->rest, batch->count, 1 + most)) return false; // as of most, in a third of the time
     for (size_t begin = 0; begin < batch->count; begin += SOME) {
@@ -61,7 +59,7 @@ static bool is_strained(const sk_batch *batch, sk_isa isa, const sk_vec4 *x, rea
         batch->type->strain(batch, x, begin, end, strain);
         for (size_t e = begin; e < end; e++) largest = sk_max(largest, strain[e - begin]);
         if (largest <= most) continue;
-        if (bounded) return true;
+        if (limited) return true;
         for (size_t e = begin; e < end; e++)
             if (strain[e - begin] > most && stiffness_in_substep(batch, x, e, h) > least_stiff) return true;
     }
@@ -74,10 +72,9 @@ void sk_world_note_strained(skein_world *world, double dt) {
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         sk_batch *batch = world->rules.batches.data[i];
         if (!sk_batch_is_on(batch) || batch->only_bounds || !batch->type->strain) continue;
-        const bool bounded = batch->bound && *batch->bound < SK_UNBOUNDED;
-        if (!bounded && !(world->sweeps_more && sk_batch_is_firm(batch))) continue;
-        const real most = bounded ? (real)(0.5 * *batch->bound) : most_of_its_own;
-        batch->strained = is_strained(batch, world->isa, world->particles.vector[SK_X], most, bounded, h);
+        const bool limited = batch->bound && *batch->bound < SK_UNBOUNDED;
+        if (!limited && !(world->sweeps_more && sk_batch_is_firm(batch))) continue;
+        batch->strained = is_strained(batch, world->isa, world->particles.vector[SK_X], limited, h);
         world->rules.strained |= batch->strained;
     }
 }
