@@ -157,9 +157,11 @@ extern const sk_kernels sk_contact_push;
 /* Position methods, once V has followed X: pushes X out with friction against X0, the second source, and gives V
  * the same move, and the bounce that V0, the third source, had coming. */
 extern const sk_kernels sk_contact_update;
-/* Position methods, while limits are still swept: finds who is pushed out, by which normal (SUPPORT) and to where (T0); and holds him there,
- * for all colliders at once, with friction against T1. */
+/* Position methods, while limits are still swept: finds who is pushed out, by which normal (SUPPORT) and to where (T0, and on by T1); and holds
+ * him there, for all colliders at once, with friction. An update with a second coefficient of 1 leaves these planes for the next substep. */
 extern const sk_kernels sk_contact_find_held, sk_contact_hold;
+/* Nobody is held; with a coefficient of 1 only in a step's first substep. */
+sk_op_kernel sk_contact_let_go;
 /* Implicit methods: what a collider holds through the substep, as a filter in dst and the second source (xx yy zz and
  * xy xz yz), friction added to the third, and V as it is held. */
 extern const sk_kernels sk_contact_filter;

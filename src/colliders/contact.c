@@ -23,6 +23,7 @@
 #include "colliders/collider.h"
 
 #include <math.h>
+#include <string.h>
 
 #include "base/kernels.h"
 
@@ -83,7 +84,7 @@ void SK_KERNEL(contact_impulse)(sk_run *run, const sk_op *op, size_t begin, size
 
 /* Puts down for contact between surfaces who is pushed by this collider, and by which normal. */
 SK_INLINE void tell_support(sk_run *run, const sk_op *op, size_t slot, encounter e) {
-    if (!op->also_writes) return;
+    if (!op->also_writes || op->coefficient[1] > 0) return; // else it puts down more
     if (!__atomic_load_n(run->supported, __ATOMIC_RELAXED)) __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
     bool packed = slot < op->packed;
     sk_wide4 support = sk_load_part(run->vector[SK_SUPPORT], slot, packed);
@@ -103,6 +104,18 @@ void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t 
     }
 }
 
+/* Puts down by which plane some are held: its normal, a point of it with the friction in w (T0), and how far the surface goes there in a substep
+ * (T1), which takes the plane along. */
+SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contact_law *law, const encounter *e, sk_mask held, sk_wide3 at, sk_wide3 goes) {
+    const bool packed = slot < op->packed;
+    const sk_wide4 normal = sk_load_part(run->vector[SK_SUPPORT], slot, packed), level = sk_load_part(run->vector[SK_T0], slot, packed);
+    const sk_wide4 old = sk_load_part(run->vector[SK_T1], slot, packed);
+    sk_store_part(run->vector[SK_SUPPORT], slot, packed, vec4_of(pick3(held, e->normal, xyz(normal)), normal.w));
+    sk_store_part(run->vector[SK_T0], slot, packed, vec4_of(pick3(held, at, xyz(level)), sk_select(held, sk_splat(law->friction), level.w)));
+    sk_store_part(run->vector[SK_T1], slot, packed, vec4_of(pick3(held, goes, xyz(old)), old.w));
+    __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
+}
+
 void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const contact_law law = law_of(op->rule, op->dt);
     sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
@@ -111,6 +124,9 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
+        if (op->coefficient[1] > 0 && sk_any(e.touching & ~e.leaving)) // the next substep's limits hold them there
+            put_plane(run, op, slot, &law, &e, e.touching & ~e.leaving, plus(xyz(e.x), times(law.thickness - e.distance, e.normal)),
+                      e.moves ? times(law.h, e.surface) : vec3_of(0, 0, 0));
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_wide3 start = xyz(sk_load_part(run->vector[op->source[1]], slot, packed));
         sk_wide3 came = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), force = came;
@@ -133,37 +149,28 @@ SK_INLINE sk_wide4 start_of(const sk_run *run, const sk_op *op, const sk_pose *p
     return vec4_of(plus(start, motion_of(vec3_of(o->shift.x, o->shift.y, o->shift.z), vec3_of(o->turn.x, o->turn.y, o->turn.z), arm)), x.w);
 }
 
-/* Puts down by which plane some are held: its normal, a point of it (T0, with the friction in w), and where they would be had they stuck
- * to the surface (T1). */
-SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contact_law *law, const encounter *e, sk_mask held, sk_wide3 stuck) {
-    const bool packed = slot < op->packed;
-    const sk_wide4 normal = sk_load_part(run->vector[SK_SUPPORT], slot, packed), level = sk_load_part(run->vector[SK_T0], slot, packed);
-    const sk_wide4 old = sk_load_part(run->vector[SK_T1], slot, packed);
-    const sk_wide3 to = plus(xyz(e->x), times(law->thickness - e->distance, e->normal));
-    sk_store_part(run->vector[SK_SUPPORT], slot, packed, vec4_of(pick3(held, e->normal, xyz(normal)), normal.w));
-    sk_store_part(run->vector[SK_T0], slot, packed, vec4_of(pick3(held, to, xyz(level)), sk_select(held, sk_splat(law->friction), level.w)));
-    sk_store_part(run->vector[SK_T1], slot, packed, vec4_of(pick3(held, stuck, xyz(old)), old.w));
-    __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
-}
-
 /* Who touched when the substep began is held by what he touched: pulled in beside a corner, he is nearer to another face. Else by what he has
- * come into. Not who began inside: he comes out slowly, and not by velocity. */
+ * come into. Not who began inside: he comes out slowly, and not by velocity. With a coefficient of 1 only in the first substep: the others
+ * know it from the update of the one before. */
 void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (op->coefficient[0] > 0 && run->iteration) return;
     const contact_law law = law_of(op->rule, op->dt);
     sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     const origin o = find_origin(op, &pose);
-    encounter e;
+    encounter e, first;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, op, &law, &pose, slot, &e)) continue;
         const sk_mask in = e.touching & sk_positive(law.thickness - e.distance);
         sk_wide3 way;
         const sk_mask came = in & ~began_deep(law, e, off_plane(run, op, &pose, &o, slot, &e, &way));
         if (!sk_any(in)) continue;
-        encounter first;
+        const sk_wide3 start = xyz(sk_load_part(run->vector[o.vector], slot, slot < op->packed));
         probe(op->rule, &law, &pose, start_of(run, op, &pose, &o, slot), (sk_wide){0}, &first);
         const sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
-        if (sk_any(came & ~rested)) put_plane(run, op, slot, &law, &e, came & ~rested, minus(xyz(e.x), way));
-        if (sk_any(rested)) put_plane(run, op, slot, &law, &first, rested, xyz(first.x));
+        const sk_wide3 behind = times(law.thickness - e.distance, e.normal), under = times(law.thickness - first.distance, first.normal);
+        // T0 is where the plane was before the surface went on
+        if (sk_any(came & ~rested)) put_plane(run, op, slot, &law, &e, came & ~rested, plus(plus(start, way), behind), minus(minus(xyz(e.x), start), way));
+        if (sk_any(rested)) put_plane(run, op, slot, &law, &first, rested, plus(start, under), minus(xyz(first.x), start));
     }
 }
 
@@ -174,10 +181,11 @@ void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t 
         const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
         if (!sk_any(sk_positive(dot(normal, normal)))) continue;
         const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed), level = sk_load_part(run->vector[op->source[1]], slot, packed);
-        const sk_wide push = dot(normal, minus(xyz(level), xyz(x)));
+        const sk_wide3 goes = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), from = minus(xyz(x), goes);
+        const sk_wide push = dot(normal, minus(xyz(level), from));
         const sk_mask in = sk_positive(push) & sk_positive(dot(normal, normal));
         if (!sk_any(in)) continue;
-        const sk_wide3 moved = minus(xyz(x), xyz(sk_load_part(run->vector[op->source[2]], slot, packed)));
+        const sk_wide3 moved = minus(from, xyz(sk_load_part(run->vector[SK_X0], slot, packed)));
         const sk_wide3 slide = across(moved, normal, dot(moved, normal));
         const sk_wide share = share_of(root(dot(slide, slide)), level.w * push);
         const sk_wide3 to = plus(xyz(x), minus(times(push, normal), times(share, slide)));
@@ -207,6 +215,11 @@ const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
 const sk_kernels sk_contact_update = {SK_EACH_ISA(contact_update)};
+void sk_contact_let_go(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    if (op->coefficient[0] > 0 && run->iteration) return;
+    memset(run->vector[op->dst] + begin, 0, (end - begin) * sizeof *run->vector[op->dst]); // packed or not, it is as long
+}
+
 const sk_kernels sk_contact_find_held = {SK_EACH_ISA(contact_find_held)};
 const sk_kernels sk_contact_hold = {SK_EACH_ISA(contact_hold)};
 

@@ -38,6 +38,8 @@ typedef struct sk_constraint_answer {
     bool is_energy, one_sided, guarded;
 } sk_constraint_answer;
 
+typedef bool sk_any_beyond_kernel(const sk_batch *batch, const sk_vec4 *x, real most);
+
 typedef struct sk_constraint_type {
     skein_kind kind; /* the parameters begin with an sk_material */
     int arity;       /* particles an element, 2 to 8 */
@@ -66,6 +68,8 @@ typedef struct sk_constraint_type {
     sk_kernels blocks;
     /* Relative violation of elements [begin, end): (length - rest)/rest for a distance. */
     void (*strain)(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *strain);
+    /* Whether any may be violated by more than that: no more may be than are. NULL: ask for all. */
+    sk_any_beyond_kernel *any_beyond[SK_ISA_COUNT];
     /* Energies over the stiffness of elements [begin, end), C^2 / 2; returns how many had to be guarded
      * (formula/graph.h). */
     size_t (*energy)(const sk_batch *batch, double time, const sk_vec4 *x, size_t begin, size_t end, double *energy);

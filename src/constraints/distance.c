@@ -24,6 +24,25 @@ SK_INLINE sk_mask beyond(const sk_element *e, sk_wide most) {
 
 #include "constraints/element_kind.h"
 
+SK_KERNELS(sk_any_beyond_kernel, any_beyond);
+#ifdef SK_ISA
+bool SK_KERNEL(any_beyond)(const sk_batch *batch, const sk_vec4 *x, real most) {
+    const real nearly = (real)0.99999, square = nearly * (1 + most) * (1 + most); // for rounding
+    for (size_t begin = 0; begin < batch->count; begin += SK_PART) {
+        uint32_t from[SK_PART], to[SK_PART];
+        sk_wide rest;
+        for (size_t l = 0; l < SK_PART; l++) {
+            const size_t e = begin + l < batch->count ? begin + l : batch->count - 1;
+            from[l] = batch->slot[2 * e], to[l] = batch->slot[2 * e + 1], rest[l] = batch->rest[e];
+        }
+        const sk_wide4 a = sk_gather(x, from), b = sk_gather(x, to);
+        const sk_wide3 r = {a.x - b.x, a.y - b.y, a.z - b.z};
+        if (sk_any(~sk_at_most(sk_dot_wide(r, r), square * rest * rest))) return true; // also of what is no number
+    }
+    return false;
+}
+#endif
+
 #ifndef SK_ISA
 
 static const skein_field fields[] = {
@@ -40,5 +59,6 @@ const sk_constraint_type sk_distance = {
     .limit = SK_WALKS_OF(limit),
     .limit_moving = SK_WALKS_OF(limit_moving),
     .strain = strain,
+    .any_beyond = SK_EACH_ISA(any_beyond),
 };
 #endif

@@ -132,6 +132,11 @@ bool sk_writes_meetings(const sk_plan_builder *builder);
 /* Limits, which move X; `velocity` is SK_V where the method does not take velocities from positions, else SK_NONE. */
 void sk_write_limits(sk_plan_builder *builder, sk_vector velocity);
 
+/* Whether updates of colliders leave for the next substep by which planes who touches them is held, while limits are swept (colliders/collider.h);
+ * before them, nobody is. */
+bool sk_keeps_planes(const sk_plan_builder *builder);
+void sk_write_forget_planes(sk_plan_builder *builder);
+
 /* For the builder's own files: adds an op, with the present substep and layout. */
 void sk_add_op(sk_plan_builder *builder, sk_op op);
 /* Adds `op` for all sweeps of a batch, as sums over their elements; sweeps along the same strips share one op. */

@@ -304,15 +304,35 @@ static void add_op_for(sk_plan_builder *builder, const sk_batch *batch, sk_op op
     if (first < end) sk_add_op(builder, first == 0 && end == builder->slot_count ? op : sk_op_for(op, first, end));
 }
 
+bool sk_keeps_planes(const sk_plan_builder *builder) {
+    const sk_rules *rules = builder->rules;
+    bool any = false;
+    for (size_t i = 0; i < rules->batches.count; i++) any |= limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i]);
+    return any && builder->predicted && sk_writes_contacts(rules) && !sk_writes_meetings(builder);
+}
+
+/* Nobody is held; if `first`, where a step begins. */
+static void forget_planes(sk_plan_builder *builder, const sk_batch *batch, bool first) {
+    add_op_for(builder, batch, (sk_op){.kind = SK_OP_LIMIT,
+                                       .order = SK_FREE,
+                                       .kernel = sk_contact_let_go,
+                                       .dst = SK_SUPPORT,
+                                       .coefficient = {first},
+                                       .label = "let go",
+                                       .end = builder->slot_count});
+}
+
+void sk_write_forget_planes(sk_plan_builder *builder) {
+    const sk_rules *rules = builder->rules;
+    for (size_t i = 0; i < rules->batches.count; i++)
+        if (limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i])) forget_planes(builder, rules->batches.data[i], false);
+}
+
 /* Finds who is pushed out by colliders that do not bounce, and where to: then he may be held there while sweeps go on. */
 static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
     const sk_rules *rules = builder->rules;
-    if (!sk_writes_meetings(builder)) // else contact of surfaces does
-        add_op_for(builder, batch, (sk_op){.kind = SK_OP_SUM,
-                                           .order = SK_FREE,
-                                           .kernel = sk_combine_sum.version[builder->isa],
-                                           .dst = SK_SUPPORT,
-                                           .end = builder->slot_count});
+    const bool known = sk_keeps_planes(builder); // from the second substep on
+    if (!sk_writes_meetings(builder)) forget_planes(builder, batch, known); // else contact of surfaces does
     for (size_t i = 0; i < rules->colliders.count; i++) {
         const sk_collider *collider = rules->colliders.data[i];
         if (!collider->common->enabled || sk_contact_reads_force(collider)) continue;
@@ -321,6 +341,7 @@ static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
                           .kernel = sk_contact_find_held.version[builder->isa],
                           .dst = SK_SUPPORT,
                           .source = {SK_X, SK_NONE, SK_X0},
+                          .coefficient = {known},
                           .also_writes = 1u << SK_T0 | 1u << SK_T1,
                           .rule = collider,
                           .label = collider->label,
@@ -341,6 +362,7 @@ static void write_hold(sk_plan_builder *builder, const sk_batch *batch) {
                                        .kernel = sk_contact_hold.version[builder->isa],
                                        .dst = SK_X,
                                        .source = {SK_SUPPORT, SK_T0, SK_T1},
+                                       .also_reads = 1u << SK_X0,
                                        .label = "held by colliders",
                                        .end = builder->slot_count});
 }

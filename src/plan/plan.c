@@ -165,5 +165,5 @@ void sk_op_describe(const sk_op *op, char *text, size_t size) {
     if (op->every > 1) snprintf(iterations, sizeof iterations, ", every %zu times", op->every);
     snprintf(text, size, "%-10s %-3s = %-44s %zu elements, %s%s%s%s", type->name, vector_text(op->dst), what,
              op->end - op->begin, op->order == SK_FREE ? "free" : "ordered", iterations, durings[op->during],
-             op->strained ? ", while edges are near their bound" : "");
+             op->strained ? ", while edges are strained" : "");
 }
