@@ -377,7 +377,7 @@ static void release_tethers(tailor *t, tethers *all) {
 }
 
 /* With coarse grids, a tether of its own pulls each particle away from the smooth shape that they give. Stretch of a
- * swinging grid of 128 x 128 (99th percentile and largest, %) with all tethers last in every second substep, and
+ * swinging grid of 128 x 128 (99th percentile and largest, %) with all tethers last (in every second substep, then), and
  * without: 0.80 and 1.97, 0.62 and 1.9; of 0.2 m 2.99 and 4.7, 1.45 and 3.3. Only particles near a pin need tethers,
  * for a few edges carry all load there: without any, the first edge beside a pin was stretched by 4.6 % as the fall
  * began; with those within 6 edges 200 x 200 kept 2.2 % at rest, within 20 1.2, within 40 no less. If cells are longer
@@ -387,7 +387,7 @@ static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
     tethers some;
     bool square = t->held.is || sk_lines_square(&t->lines);
     skein_status status = allocate_tethers(t, &some, all->count, all->anchors)
-                              ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count, all->anchors,
+                              ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_LAST, all->count, all->anchors,
                                                      all->particles, all->lengths, t->error)
                               : sk_fail_memory(t->error, "tethers");
     for (int i = 0; i < (square ? 2 : 1) && !status; i++) status = add_some_tethers(t, all, orders[i], &some);
@@ -418,10 +418,9 @@ static skein_status add_tethers(tailor *t) {
         source[i] = true;
         good = measure_tethers(t, geodesic, source, k++, &all, distance, nearest);
     }
-    sk_limit_order order = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
     skein_status status = !good                  ? sk_fail_memory(t->error, "tethers")
                           : t->coarsest.row_step || t->held.is ? add_tethers_of_coarse(t, &all)
-                                                 : sk_world_add_tethers(t->world, t->body, order, tethered, anchors,
+                                                 : sk_world_add_tethers(t->world, t->body, SK_LIMIT_LAST, tethered, anchors,
                                                                         all.particles, all.lengths, t->error);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);

@@ -84,26 +84,18 @@ static sk_op_while during_of(int variants, int variant) {
     return variants == 1 ? SK_ALWAYS : variant ? SK_WHILE_NEAR : SK_WHILE_APART;
 }
 
-static sk_op limit_op(const sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity, size_t every) {
-    return (sk_op){.kind = SK_OP_LIMIT,
-                   .order = SK_FREE,
-                   .kernel = limit->kernel.version[builder->isa],
-                   .dst = SK_X,
-                   .source = {SK_X, velocity},
-                   .rule = limit,
-                   .label = limit->label,
-                   .every = every,
-                   .begin = limit->first_slot,
-                   .end = limit->first_slot + limit->slot_count};
-}
-
-static void add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity, size_t every) {
-    int variants = variants_of(builder, every);
-    for (int i = 0; i < variants; i++) {
-        sk_op op = limit_op(builder, limit, velocity, i ? 0 : every);
-        op.during = during_of(variants, i);
-        sk_add_op(builder, op);
-    }
+/* Tethers, in every substep: taken in every second one they throw who hangs from them to and fro between both, for ever. A sheet of 20 x 20 that
+ * hung still by its corners had 7 cm/s in its velocities so, and a sheet by one point turned around it. */
+static void add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity) {
+    sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
+                               .order = SK_FREE,
+                               .kernel = limit->kernel.version[builder->isa],
+                               .dst = SK_X,
+                               .source = {SK_X, velocity},
+                               .rule = limit,
+                               .label = limit->label,
+                               .begin = limit->first_slot,
+                               .end = limit->first_slot + limit->slot_count});
 }
 
 /* Sweeps over distances whose corrections are carried on, forward and backward in turn. */
@@ -148,11 +140,11 @@ static bool has_coarse(const sk_plan_builder *builder, const sk_limit *limit) {
 }
 
 /* Tethers that go with coarse grids, for methods that have these. */
-static void write_tethers(sk_plan_builder *builder, sk_limit_order order, size_t every) {
+static void write_tethers(sk_plan_builder *builder, sk_limit_order order) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (is_kept(limit) && limit->order == order && has_coarse(builder, limit)) add_limit(builder, limit, SK_NONE, every);
+        if (is_kept(limit) && limit->order == order && has_coarse(builder, limit)) add_limit(builder, limit, SK_NONE);
     }
 }
 
@@ -160,14 +152,14 @@ static void write_tethers(sk_plan_builder *builder, sk_limit_order order, size_t
  * the edges. */
 static void write_spans(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
-    write_tethers(builder, SK_LIMIT_BEFORE_COARSE, 0);
+    write_tethers(builder, SK_LIMIT_BEFORE_COARSE);
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
         if (!batch->only_bounds || !has_bound(batch)) continue;
         if (sk_batch_carries(batch)) write_carriers(builder, batch);
         else add_sweeps(builder, batch, 0, SK_OP_LIMIT, &batch->type->limit, SK_X, SK_NONE);
     }
-    write_tethers(builder, SK_LIMIT_AFTER_COARSE, seldom_of(builder));
+    write_tethers(builder, SK_LIMIT_AFTER_COARSE);
 }
 
 /* Whether a batch may be projected in every second substep: if its elements' own oscillations are slow compared with
@@ -443,11 +435,8 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     write_first_limits(builder, velocity);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM ||
-                    (limit->order == SK_LIMIT_WITHOUT_COARSE && !has_coarse(builder, limit));
-        if (!is_kept(limit) || !last) continue;
-        size_t every = velocity == SK_NONE && limit->order == SK_LIMIT_SELDOM ? seldom_of(builder) : 0;
-        add_limit(builder, limit, velocity, every);
+        const bool last = limit->order == SK_LIMIT_LAST || (limit->order == SK_LIMIT_WITHOUT_COARSE && !has_coarse(builder, limit));
+        if (is_kept(limit) && last) add_limit(builder, limit, velocity);
     }
     write_strain_limits(builder, velocity);
     if (velocity == SK_NONE) write_more_sweeps(builder);
