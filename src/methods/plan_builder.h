@@ -139,6 +139,15 @@ void sk_write_forget_planes(sk_plan_builder *builder);
 
 /* For the builder's own files: adds an op, with the present substep and layout. */
 void sk_add_op(sk_plan_builder *builder, sk_op op);
+/* Adds a sweep's op, run in each `every`-th substep; `coefficient` is the number of ops that share the stiffness, or how far a limit goes beyond
+ * its bound. */
+void sk_add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind, const sk_sweep_kernels *kernels, sk_vector dst,
+                  sk_vector second, double coefficient, size_t every, sk_op_while during, const bool *strained);
+/* Whether something bounds a batch's elements; whether tethers are kept, and whether they go with coarse grids; and adds their op. */
+bool sk_batch_has_bound(const sk_batch *batch);
+bool sk_limit_is_kept(const sk_limit *limit);
+bool sk_limit_has_coarse(const sk_plan_builder *builder, const sk_limit *limit);
+void sk_add_limit(sk_plan_builder *builder, const sk_limit *limit, sk_vector velocity);
 /* Adds `op` for all sweeps of a batch, as sums over their elements; sweeps along the same strips share one op. */
 void sk_add_sums(sk_plan_builder *builder, const sk_batch *batch, sk_op op, const sk_sweep_kernels *kernels);
 /* Adds an op over slots, only for those that a rule acts on: one for each body if the rule names bodies. */

@@ -1,5 +1,5 @@
 /* Whether edges are near their bound when a step begins, batch by batch, by the positions alone: then the bound is swept over and over in each
- * of its substeps (methods/plan_builder_correct.c); else once is enough, or not at all, which costs a fifth of that. What hangs by an edge, or
+ * of its substeps (methods/plan_builder_limit.c); else once is enough, or not at all, which costs a fifth of that. What hangs by an edge, or
  * by two corners, is held by its tethers, and far from its bound.
  *
  * A sheet's edges that nothing limits are firm all the same, if they are stiff: a substep would undo a stretch of a twentieth at once, did not
