@@ -387,7 +387,7 @@ static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
     tethers some;
     bool square = t->held.is || sk_lines_square(&t->lines);
     skein_status status = allocate_tethers(t, &some, all->count, all->anchors)
-                              ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_LAST, all->count, all->anchors,
+                              ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count, all->anchors,
                                                      all->particles, all->lengths, t->error)
                               : sk_fail_memory(t->error, "tethers");
     for (int i = 0; i < (square ? 2 : 1) && !status; i++) status = add_some_tethers(t, all, orders[i], &some);
@@ -418,9 +418,10 @@ static skein_status add_tethers(tailor *t) {
         source[i] = true;
         good = measure_tethers(t, geodesic, source, k++, &all, distance, nearest);
     }
+    sk_limit_order order = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
     skein_status status = !good                  ? sk_fail_memory(t->error, "tethers")
                           : t->coarsest.row_step || t->held.is ? add_tethers_of_coarse(t, &all)
-                                                 : sk_world_add_tethers(t->world, t->body, SK_LIMIT_LAST, tethered, anchors,
+                                                 : sk_world_add_tethers(t->world, t->body, order, tethered, anchors,
                                                                         all.particles, all.lengths, t->error);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);

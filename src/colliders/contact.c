@@ -116,6 +116,12 @@ SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contac
     __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
 }
 
+/* Whether they are to be held: what bounces, only where it does not. */
+SK_INLINE sk_mask is_resting(const contact_law *law, const encounter *e, sk_wide3 came, sk_wide3 force) {
+    if (!law->bounces) return ~(sk_mask){0};
+    return sk_at_most(-dot(from_surface(came, *e), e->normal), resting_speed(*e, force, law->h));
+}
+
 void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const contact_law law = law_of(op->rule, op->dt);
     sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
@@ -124,14 +130,15 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         if (!meet_at_end(run, op, &law, &pose, &o, slot, &e)) continue;
-        if (op->coefficient[1] > 0 && sk_any(e.touching & ~e.leaving)) // the next substep's limits hold them there
-            put_plane(run, op, slot, &law, &e, e.touching & ~e.leaving, plus(xyz(e.x), times(law.thickness - e.distance, e.normal)),
-                      e.moves ? times(law.h, e.surface) : vec3_of(0, 0, 0));
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_wide3 start = xyz(sk_load_part(run->vector[op->source[1]], slot, packed));
         sk_wide3 came = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), force = came;
         if (law.bounces) force = xyz(sk_load_part(run->vector[SK_F], slot, packed));
         tell_support(run, op, slot, e);
+        const sk_mask rests = e.touching & ~e.leaving & is_resting(&law, &e, came, force);
+        if (op->coefficient[1] > 0 && sk_any(rests)) // the next substep's limits hold them there
+            put_plane(run, op, slot, &law, &e, rests, plus(xyz(e.x), times(law.thickness - e.distance, e.normal)),
+                      e.moves ? times(law.h, e.surface) : vec3_of(0, 0, 0));
         sk_wide3 way = way_out(law, e, start);
         add_where(e.touching & sk_positive(push_of(e)), &e.x, way);
         sk_store_part(run->vector[op->dst], slot, packed, e.x);
@@ -162,11 +169,17 @@ void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, si
         if (!meet(run, op, &law, &pose, slot, &e)) continue;
         const sk_mask in = e.touching & sk_positive(law.thickness - e.distance);
         sk_wide3 way;
-        const sk_mask came = in & ~began_deep(law, e, off_plane(run, op, &pose, &o, slot, &e, &way));
+        sk_mask came = in & ~began_deep(law, e, off_plane(run, op, &pose, &o, slot, &e, &way));
         if (!sk_any(in)) continue;
         const sk_wide3 start = xyz(sk_load_part(run->vector[o.vector], slot, slot < op->packed));
         probe(op->rule, &law, &pose, start_of(run, op, &pose, &o, slot), (sk_wide){0}, &first);
-        const sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
+        sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
+        if (law.bounces) {
+            const sk_wide3 v = xyz(sk_load_part(run->vector[SK_V], slot, slot < op->packed)), f = xyz(sk_load_part(run->vector[SK_F], slot, slot < op->packed));
+            find_motion(op->rule, &pose, &first);
+            rested &= is_resting(&law, &first, v, f);
+            came &= rested;
+        }
         const sk_wide3 behind = times(law.thickness - e.distance, e.normal), under = times(law.thickness - first.distance, first.normal);
         // T0 is where the plane was before the surface went on
         if (sk_any(came & ~rested)) put_plane(run, op, slot, &law, &e, came & ~rested, plus(plus(start, way), behind), minus(minus(xyz(e.x), start), way));

@@ -27,8 +27,9 @@ typedef struct sk_anchor {
  * others the last. Where a grid's cells are longer one way, all are applied last, besides the coarsest grid's own. */
 typedef enum sk_limit_order {
     SK_LIMIT_LAST,           /* after all that pulls */
+    SK_LIMIT_SELDOM,         /* the same, but by position methods in every second substep while surfaces may meet, and none do */
     SK_LIMIT_BEFORE_COARSE,  /* on the coarsest grid's particles, before coarse grids carry their movement on */
-    SK_LIMIT_AFTER_COARSE,   /* on particles near an anchor, before all that pulls */
+    SK_LIMIT_AFTER_COARSE,   /* on particles near an anchor, before all that pulls, as seldom */
     SK_LIMIT_WITHOUT_COARSE, /* last, by methods that do not use coarse grids */
 } sk_limit_order;
 

@@ -119,7 +119,6 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
     if (keeps) sk_write_forget_planes(builder);
     for (size_t i = 0; i < builder->rules->colliders.count; i++) {
         const sk_collider *collider = builder->rules->colliders.data[i];
-        const bool leaves = keeps && !sk_contact_reads_force(collider); // what bounces holds nobody
         if (!collider->common->enabled) continue;
         if (sort != SK_CONTACT_FORCE && collider->type->changes && collider->type->changes(collider->params))
             sk_add_op(builder, (sk_op){.kind = SK_OP_MEET,
@@ -148,8 +147,8 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .rule = collider,
                     .label = collider->label,
                     .also_reads = updates && sk_contact_reads_force(collider) ? 1u << SK_F : 0,
-                    .also_writes = (tells || leaves ? 1u << SK_SUPPORT : 0) | (leaves ? 1u << SK_T0 | 1u << SK_T1 : 0),
-                    .coefficient = {0, leaves},
+                    .also_writes = (tells || keeps ? 1u << SK_SUPPORT : 0) | (keeps ? 1u << SK_T0 | 1u << SK_T1 : 0),
+                    .coefficient = {0, keeps},
                     .end = builder->slot_count};
         sk_add_op_on(builder, op, &collider->only);
     }

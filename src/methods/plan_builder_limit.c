@@ -101,14 +101,14 @@ void sk_write_forget_planes(sk_plan_builder *builder) {
         if (limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i])) forget_planes(builder, rules->batches.data[i], false);
 }
 
-/* Finds who is pushed out by colliders that do not bounce, and where to: then he may be held there while sweeps go on. */
+/* Finds who is pushed out by colliders, but does not bounce, and where to: then he may be held there while sweeps go on. */
 static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
     const sk_rules *rules = builder->rules;
     const bool known = sk_keeps_planes(builder); // from the second substep on
     if (!sk_writes_meetings(builder)) forget_planes(builder, batch, known); // else contact of surfaces does
     for (size_t i = 0; i < rules->colliders.count; i++) {
         const sk_collider *collider = rules->colliders.data[i];
-        if (!collider->common->enabled || sk_contact_reads_force(collider)) continue;
+        if (!collider->common->enabled) continue;
         const sk_op op = {.kind = SK_OP_CONTACT_SWEEP,
                           .order = SK_FREE,
                           .kernel = sk_contact_find_held.version[builder->isa],
@@ -116,6 +116,7 @@ static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
                           .source = {SK_X, SK_NONE, SK_X0},
                           .coefficient = {known},
                           .also_writes = 1u << SK_T0 | 1u << SK_T1,
+                          .also_reads = sk_contact_reads_force(collider) ? 1u << SK_F : 0,
                           .rule = collider,
                           .label = collider->label,
                           .end = builder->slot_count};
@@ -216,7 +217,7 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     write_first_limits(builder, velocity);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        const bool last = limit->order == SK_LIMIT_LAST || (limit->order == SK_LIMIT_WITHOUT_COARSE && !sk_limit_has_coarse(builder, limit));
+        const bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM || (limit->order == SK_LIMIT_WITHOUT_COARSE && !sk_limit_has_coarse(builder, limit));
         if (sk_limit_is_kept(limit) && last) sk_add_limit(builder, limit, velocity);
     }
     write_strain_limits(builder, velocity);

@@ -50,9 +50,9 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
     // each array grows by itself: if one fails, the others are merely larger than needed
     if (slot_need > particles->slot_capacity) {
         size_t old = particles->slot_capacity, room = room_for(old, slot_need);
-        drop_temporaries(particles, allocator);
-        for (int v = SK_X; v < SK_T0; v++)
-            if (!grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
+        // temporaries, too: if there is no memory, the plan that named them is run on
+        for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
+            if ((v < SK_T0 || particles->vector[v]) && !grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
         if (!grow(allocator, (void **)&particles->particle_of, old, room, sizeof(uint32_t))) return false;
         particles->slot_capacity = room;
     }
