@@ -2,6 +2,7 @@
  *
  * The file is a recording of the library's (skein/record.h) whose note is JSON: the scene as it ran, where it was read
  * from (its meshes are found by that), and the command line. */
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -42,6 +43,7 @@ static bool apply_change(skein_world *world, const change *c) {
     if (json_is_number(value)) given = skein_number(json_number_value(value));
     else if (json_is_boolean(value)) given = skein_number(json_is_true(value));
     else if (json_is_string(value)) given.text = json_string_value(value);
+    if (!given.count && !strcmp(given.text, "infinite")) given = skein_number(INFINITY); // as --set and scenes have it
     else if (json_is_array(value) && json_array_size(value) <= 3) {
         given.count = (int)json_array_size(value);
         for (size_t k = 0; k < json_array_size(value); k++)

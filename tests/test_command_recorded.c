@@ -22,7 +22,8 @@ static void what_was_done_is_done_again(void **state) {
     char path[700], part[900];
     snprintf(path, sizeof path, "%s", in_folder("a.skeinrec"));
     outcome o = SKEIN("record", scene, "-o", path, "--no-progress", "--at", "10 colliders.0.radius=0.4", "--at",
-                      "20 forces.0.acceleration=[0, -3, 0]", "--at", "25 bodies.line.name=cord");
+                      "20 forces.0.acceleration=[0, -3, 0]", "--at", "25 bodies.line.name=cord", "--at",
+                      "30 bodies.cape.stretch.limit=infinite");
     assert_status(o, 0);
     assert_contains(o.out, "state hash");
     char hash[40];
