@@ -207,6 +207,7 @@ static void a_limit_is_kept_at_rest(void **state) {
 /* Where tethers were taken in every second substep, they threw who hangs from them to and fro: 2 to 9 cm/s, for ever. */
 static void what_hangs_still_has_no_velocity(void **state) {
     (void)state;
+    ONLY_IN_PLAIN_BUILDS();
     static const char *const pins[] = {"top corners", "top edge", "corners"};
     for (int substeps = 9; substeps <= 10; substeps++)
         for (size_t i = 0; i < COUNT(pins); i++)
@@ -297,6 +298,7 @@ static void what_lies_on_corners_keeps_its_limit(void **state) {
  * and went. What is soft stretches as it is meant to, and as it does if its tethers are off, too. */
 static void what_lies_on_corners_is_firm(void **state) {
     (void)state;
+    ONLY_IN_PLAIN_BUILDS();
     double energy;
     for (int sort = AS_BOX; sort <= AS_MESH; sort++)
         for (int mesh = 0; mesh < 2; mesh++)
