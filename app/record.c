@@ -43,12 +43,12 @@ static bool apply_change(skein_world *world, const change *c) {
     if (json_is_number(value)) given = skein_number(json_number_value(value));
     else if (json_is_boolean(value)) given = skein_number(json_is_true(value));
     else if (json_is_string(value)) given.text = json_string_value(value);
-    if (!given.count && !strcmp(given.text, "infinite")) given = skein_number(INFINITY); // as --set and scenes have it
     else if (json_is_array(value) && json_array_size(value) <= 3) {
         given.count = (int)json_array_size(value);
         for (size_t k = 0; k < json_array_size(value); k++)
             given.number[k] = json_number_value(json_array_get(value, k));
     }
+    if (!given.count && !strcmp(given.text, "infinite")) given = skein_number(INFINITY); // as --set and scenes have it
     skein_status status = skein_set_path(world, path, given);
     if (status) {
         fprintf(stderr, "skein record: --at: ");

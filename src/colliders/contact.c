@@ -126,6 +126,7 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
     const contact_law law = law_of(op->rule, op->dt);
     sk_pose pose = sk_collider_pose_at(op->rule, run->time - op->before_end);
     const origin o = find_origin(op, &pose);
+    const bool leaves = op->coefficient[1] > 0 && run->strained;
     encounter e;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
@@ -135,10 +136,12 @@ void SK_KERNEL(contact_update)(sk_run *run, const sk_op *op, size_t begin, size_
         sk_wide3 came = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), force = came;
         if (law.bounces) force = xyz(sk_load_part(run->vector[SK_F], slot, packed));
         tell_support(run, op, slot, e);
-        const sk_mask rests = e.touching & ~e.leaving & is_resting(&law, &e, came, force);
-        if (op->coefficient[1] > 0 && sk_any(rests)) // the next substep's limits hold them there
-            put_plane(run, op, slot, &law, &e, rests, plus(xyz(e.x), times(law.thickness - e.distance, e.normal)),
-                      e.moves ? times(law.h, e.surface) : vec3_of(0, 0, 0));
+        if (leaves) { // the next substep's limits hold them there
+            const sk_mask rests = e.touching & ~e.leaving & is_resting(&law, &e, came, force);
+            if (sk_any(rests))
+                put_plane(run, op, slot, &law, &e, rests, plus(xyz(e.x), times(law.thickness - e.distance, e.normal)),
+                          e.moves ? times(law.h, e.surface) : vec3_of(0, 0, 0));
+        }
         sk_wide3 way = way_out(law, e, start);
         add_where(e.touching & sk_positive(push_of(e)), &e.x, way);
         sk_store_part(run->vector[op->dst], slot, packed, e.x);
@@ -168,9 +171,9 @@ void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, si
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         if (!meet(run, op, &law, &pose, slot, &e)) continue;
         const sk_mask in = e.touching & sk_positive(law.thickness - e.distance);
+        if (!sk_any(in)) continue;
         sk_wide3 way;
         sk_mask came = in & ~began_deep(law, e, off_plane(run, op, &pose, &o, slot, &e, &way));
-        if (!sk_any(in)) continue;
         const sk_wide3 start = xyz(sk_load_part(run->vector[o.vector], slot, slot < op->packed));
         probe(op->rule, &law, &pose, start_of(run, op, &pose, &o, slot), (sk_wide){0}, &first);
         sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
@@ -192,11 +195,12 @@ void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t 
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         const bool packed = slot < op->packed;
         const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
-        if (!sk_any(sk_positive(dot(normal, normal)))) continue;
+        const sk_mask held = sk_positive(dot(normal, normal));
+        if (!sk_any(held)) continue;
         const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed), level = sk_load_part(run->vector[op->source[1]], slot, packed);
         const sk_wide3 goes = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), from = minus(xyz(x), goes);
         const sk_wide push = dot(normal, minus(xyz(level), from));
-        const sk_mask in = sk_positive(push) & sk_positive(dot(normal, normal));
+        const sk_mask in = sk_positive(push) & held;
         if (!sk_any(in)) continue;
         const sk_wide3 moved = minus(from, xyz(sk_load_part(run->vector[SK_X0], slot, packed)));
         const sk_wide3 slide = across(moved, normal, dot(moved, normal));
@@ -228,13 +232,13 @@ const sk_kernels sk_contact_force = {SK_EACH_ISA(contact_force)};
 const sk_kernels sk_contact_impulse = {SK_EACH_ISA(contact_impulse)};
 const sk_kernels sk_contact_push = {SK_EACH_ISA(contact_push)};
 const sk_kernels sk_contact_update = {SK_EACH_ISA(contact_update)};
+const sk_kernels sk_contact_find_held = {SK_EACH_ISA(contact_find_held)};
+const sk_kernels sk_contact_hold = {SK_EACH_ISA(contact_hold)};
+
 void sk_contact_let_go(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     if (op->coefficient[0] > 0 && run->iteration) return;
     memset(run->vector[op->dst] + begin, 0, (end - begin) * sizeof *run->vector[op->dst]); // packed or not, it is as long
 }
-
-const sk_kernels sk_contact_find_held = {SK_EACH_ISA(contact_find_held)};
-const sk_kernels sk_contact_hold = {SK_EACH_ISA(contact_hold)};
 
 const skein_field sk_collider_fields[] = {
     SK_TEXT(sk_collider_common, name, "name", "", "for paths and messages"),

@@ -53,12 +53,6 @@ bool sk_batch_is_firm(const sk_batch *batch) {
     return sk_batch_pulls(batch) && batch->tether && *batch->tether < SK_UNBOUNDED && !(*batch->bound < SK_UNBOUNDED);
 }
 
-double sk_batch_bound(const sk_batch *batch) {
-    const double firm = 0.05; // of a stiff sheet hardly anything is meant to be stretched by more
-    if (!batch->bound) return 0;
-    return *batch->bound < SK_UNBOUNDED || !sk_batch_is_firm(batch) ? *batch->bound : firm;
-}
-
 bool sk_batch_is_loaded(const sk_batch *batch) {
     return is_there(batch) && !batch->only_bounds;
 }

@@ -122,7 +122,8 @@ struct sk_batch {
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
     uint32_t *particle; /* count x arity, user's indices */
-    uint32_t *slot;     /* the same as slots */
+    uint32_t *slot;     /* the same as slots, */
+    size_t first_slot, end_slot; /* which are all in [first, end) */
     real *rest;         /* rest_count x count: first all first ones */
     real *scale;        /* NULL: all 1 */
     sk_elements whole;  /* all elements, if some are left out above; else empty */
@@ -162,7 +163,12 @@ bool sk_batch_pulls(const sk_batch *batch);
 /* Whether it is of edges that are meant to be firm, and that nothing limits; and what limit ops take them back to, where nothing limits
  * them, or else its bound. */
 bool sk_batch_is_firm(const sk_batch *batch);
-double sk_batch_bound(const sk_batch *batch);
+#define SK_FIRM_BOUND 0.05 /* of a stiff sheet hardly anything is meant to be stretched by more */
+static inline double sk_batch_bound(const sk_batch *batch) {
+    if (!batch->bound) return 0;
+    const bool own = !batch->tether || *batch->bound < SK_UNBOUNDED;
+    return own || !sk_batch_is_firm(batch) ? *batch->bound : SK_FIRM_BOUND;
+}
 /* Whether it pulls, or would if it did not sleep: it holds energy. */
 bool sk_batch_is_loaded(const sk_batch *batch);
 /* Leaves out the elements of particles that take no part (for good if they are gone), and restores those whose

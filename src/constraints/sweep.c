@@ -301,7 +301,12 @@ bool sk_batch_arrange(sk_batch *batch, sk_allocator *allocator, const sk_particl
     for (size_t i = 0; i < batch->arity * batch->count && particles->asleep_count && !batch->asleep; i++)
         batch->asleep = particles->presence[batch->particle[i]] == SK_ASLEEP;
     if (batch->count && !sk_particle_counts(particles, batch->particle[0])) return true;
-    for (size_t i = 0; i < batch->arity * batch->count; i++) batch->slot[i] = particles->slot_of[batch->particle[i]];
+    batch->first_slot = SIZE_MAX, batch->end_slot = 0;
+    for (size_t i = 0; i < batch->arity * batch->count; i++) {
+        const uint32_t slot = batch->slot[i] = particles->slot_of[batch->particle[i]];
+        if (slot < batch->first_slot) batch->first_slot = slot;
+        if (slot >= batch->end_slot) batch->end_slot = slot + 1;
+    }
     if (batch->aggregate) sk_aggregate_arrange(batch->aggregate, particles);
     // of what sleeps the energy is asked for, and nothing else
     if (!batch->enclosure) return batch->asleep || cut(batch, allocator, particles);

@@ -138,7 +138,6 @@ typedef struct sk_force_type {
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
 
-/* A force as methods see it: a type with its parameters. An op's rule is one of these. */
 /* Of a rule that meets, where its thickness was raised: by how much nearer surfaces may be at first, and since when. What lies on each
  * other is led apart, the slower the less is left of it: by a speed that falls by a hundredth of what gravity takes, so that nothing
  * is thrown, and piles of dozens of layers stay together. */
@@ -152,6 +151,7 @@ static inline double sk_easing_left(const sk_easing *easing, double time) {
     return root > 0 ? root * root : 0;
 }
 
+/* A force as methods see it: a type with its parameters. An op's rule is one of these. */
 struct sk_force {
     const sk_force_type *type;
     const void *params;

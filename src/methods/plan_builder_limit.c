@@ -58,21 +58,9 @@ static int most_limit_sweeps(const sk_rules *rules) {
     return most;
 }
 
-/* The slots of a batch's particles, [first, end). */
-static void find_slots(const sk_batch *batch, size_t *first, size_t *end) {
-    *first = SIZE_MAX, *end = 0;
-    for (size_t i = 0; i < batch->count * batch->arity; i++) {
-        if (batch->slot[i] < *first) *first = batch->slot[i];
-        if (batch->slot[i] >= *end) *end = batch->slot[i] + 1;
-    }
-}
-
 /* Adds an op over slots for those of a batch, while its edges are strained: what else there is must not know of that. */
 static void add_op_for(sk_plan_builder *builder, const sk_batch *batch, sk_op op) {
-    size_t first, end;
-    find_slots(batch, &first, &end);
-    if (first < op.begin) first = op.begin;
-    if (end > op.end) end = op.end;
+    const size_t first = batch->first_slot > op.begin ? batch->first_slot : op.begin, end = batch->end_slot < op.end ? batch->end_slot : op.end;
     op.strained = &batch->strained;
     if (first < end) sk_add_op(builder, first == 0 && end == builder->slot_count ? op : sk_op_for(op, first, end));
 }
@@ -217,7 +205,8 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
     write_first_limits(builder, velocity);
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        const bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM || (limit->order == SK_LIMIT_WITHOUT_COARSE && !sk_limit_has_coarse(builder, limit));
+        const bool last = limit->order == SK_LIMIT_LAST || limit->order == SK_LIMIT_SELDOM ||
+                          (limit->order == SK_LIMIT_WITHOUT_COARSE && !sk_limit_has_coarse(builder, limit));
         if (sk_limit_is_kept(limit) && last) sk_add_limit(builder, limit, velocity);
     }
     write_strain_limits(builder, velocity);

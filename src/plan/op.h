@@ -152,6 +152,7 @@ struct sk_run {
     const sk_op *timed;
     size_t iteration;              /* of the innermost repeat, from 0 on, */
     bool last_iteration;           /* and whether it is the last */
+    bool strained;                 /* when the step began some edge was near its bound (world/strained.c) */
     bool near;                     /* surfaces are near each other in this substep, */
     double near_at;                /* which ends at this time */
     bool no_memory;           /* an allocation failed: so will the step */

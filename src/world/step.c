@@ -235,6 +235,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         uint64_t mode = sk_float_mode_enter();
         run.seconds = seconds;
         sk_world_note_strained(world, dt);
+        run.strained = world->rules.strained;
         if (world->live && !seconds) sk_run_ops(&run, world->tasks, world->live, find_live(world));
         else sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
