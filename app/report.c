@@ -102,6 +102,7 @@ static json_t *make_document(const app_report *r) {
         {"contacts", count(s->contacts)},
         {"crossings", count(s->crossings)},
         {"worst_crossings_of_run", count(r->worst_crossings)},
+        {"contact_overflows", count(s->contact_overflows)},
         {"crossed_frames", count((uint64_t)r->crossed_frames)},
         {"kinetic_energy", number(s->kinetic_energy)},
         {"potential_energy", number(s->potential_energy)},
@@ -202,6 +203,9 @@ void app_report_print(const app_report *r) {
         printf("%d frame%s had edges that go through faces, up to %zu in one; %zu at the end\n", r->crossed_frames,
                plural((uint64_t)r->crossed_frames), r->worst_crossings, s->crossings);
     else if (r->counts_crossings) printf("no edge went through a face in any frame\n");
+    if (s->contact_overflows)
+        printf("contact gave up %" PRIu64 " time%s, for more pairs were near each other than there is room for: a smaller thickness helps\n",
+               s->contact_overflows, plural(s->contact_overflows));
     if (s->all_unsolved)
         printf("%" PRIu64 " of %" PRIu64
                " substeps were left unsolved: more substeps, newton_iterations or cg_iterations help\n",

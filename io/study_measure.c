@@ -43,6 +43,7 @@ static const io_study_quantity quantities[] = {
     NUMBER(residual, "", "of the last step's solve (backward_euler)"),
     COUNTED(contacts, "pairs of a particle and a collider that touch"),
     COUNTED(crossings, "of an edge and a triangle"),
+    COUNTED(contact_overflows, "searches of contact that gave up"),
     COUNTED(asleep, "particles of bodies that sleep"),
     COUNTED(all_unsolved, "substeps that a solve left unsolved"),
     COUNTED(guarded, "values of formulas that have none"),

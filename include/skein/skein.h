@@ -833,6 +833,9 @@ typedef struct skein_statistics {
     size_t solver_failures;   /* of these, and of its solves: the solve went on with each particle's own block */
     /* of all steps since the beginning or the last skein_world_reset() */
     uint64_t all_unsolved, all_solver_failures;
+    uint64_t contact_overflows; /* searches that found more pairs for the force "contact" than there is room for, so that nothing
+                                   touched until the next one: its thickness is too large for the bodies, or they have blown
+                                   up. Since the beginning or the last reset; a snapshot does not hold it */
     double max_penetration;   /* m, below a collider's thickness */
     size_t contacts;          /* pairs of a particle and a collider that touch */
     size_t crossings;         /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */

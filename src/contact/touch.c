@@ -298,6 +298,31 @@ static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool
     return true;
 }
 
+/* By how much the nearest pair has less than its thickness, of those with a corner among the particles that are asked about. */
+static real find_missing(const sk_touch *touch, const sk_easing *easing) {
+    real missing = 0;
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (size_t i = 0; i < touch->near[sort].count; i++) {
+            const uint32_t entry = touch->near[sort].data[i];
+            const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+            bool asked = false;
+            for (int c = 0; c < 4; c++) {
+                const uint32_t particle = touch->skin.particle[pairs->corner[c][entry / 2]];
+                asked |= particle >= easing->asks && particle < easing->asks_end;
+            }
+            if (asked) missing = sk_max(missing, pairs->thickness[entry / 2] - pairs->distance[entry / 2]);
+        }
+    return missing;
+}
+
+/* Who begins, begins with the thickness that his pairs have, and lets it grow; others may have that of before. */
+static void ease(sk_touch *touch, sk_force *force, double time) {
+    const real missing = find_missing(touch, &force->easing);
+    const double left = sk_easing_left(&force->easing, time), less = (double)missing > left ? (double)missing : left;
+    force->easing = (sk_easing){less, time, 0, 0};
+    touch->less = (real)less;
+}
+
 /* Where the substep begins is copied, unless all panels lie spread out and the method keeps it, too: then mostly nobody asks. */
 static void begin_where_all_are(sk_touch *touch, const sk_run *run) {
     touch->before = touch->x = run->vector[SK_X];
@@ -316,7 +341,8 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     bool same = !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
     touch->thickness = thickness;
     touch->usual = usual;
-    touch->less = (real)sk_easing_left(&((const sk_force *)op->rule)->easing, run->time);
+    const sk_easing *easing = &((const sk_force *)op->rule)->easing;
+    touch->less = (real)sk_easing_left(easing, run->time);
     if (!same) sk_calm_forget(touch);
     touch->loaded = false;
     touch->tasks = run->tasks;
@@ -331,6 +357,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->followed = touch->corrects = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     good = good && list_near(touch, run->allocator);
+    if (good && easing->asks < easing->asks_end) ease(touch, (sk_force *)op->rule, run->time);
     if (run->near_at < run->time || run->near_at > run->time) run->near = false; // of this substep nobody has said yet
     run->near_at = run->time;
     run->near |= touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count > 0 || touch->tangle.any;
@@ -466,11 +493,12 @@ static skein_status check(const void *params, skein_error *error) {
     return sk_ignored_check(((const sk_contact_params *)params)->ignore, error);
 }
 
-static bool gave_up(sk_force *force) {
+static uint64_t gave_up(sk_force *force, bool *first) {
     sk_touch *touch = force->state;
-    bool tells = touch && touch->given_up && !touch->told;
-    if (tells) touch->told = true;
-    return tells;
+    const uint64_t times = touch ? touch->given_up - touch->told : 0;
+    *first = times && !touch->told;
+    if (times) touch->told = touch->given_up;
+    return times;
 }
 
 static const sk_meeting_body *crowded(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,

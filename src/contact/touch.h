@@ -179,7 +179,7 @@ typedef struct sk_touch {
         size_t count, capacity;
     } order, other_order;         /* of late pairs that are near */
     uint64_t searches, given_up; /* how often it searched, and gave up: */
-    bool told;                   /* the world was told so; */
+    uint64_t told;               /* of these the world knows; */
     bool asked_crowded, told_crowded; /* whether a body of this skin is too thick for its edges; and of one */
 } sk_touch;
 

@@ -69,8 +69,8 @@ typedef struct sk_meeting {
     const char *(*ignored)(const void *params);
     /* Whether such pairs are written as they should be. */
     skein_status (*check)(const void *params, skein_error *error);
-    /* Whether there were too many pairs in some substep, so that it skipped all. True once, for the world's warning. */
-    bool (*gave_up)(sk_force *force);
+    /* How often there were too many pairs, so that it skipped all, since it was last asked; `first` where it had never been. */
+    uint64_t (*gave_up)(sk_force *force, bool *first);
     /* A body that is too thick for its edges, as they were built, in the mean: both in m. NULL: none, or it was told of. */
     const sk_meeting_body *(*crowded)(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,
                                       double *thickness);
@@ -138,11 +138,13 @@ typedef struct sk_force_type {
     void (*look)(const void *params, double look[3]);
 } sk_force_type;
 
-/* Of a rule that meets, where its thickness was raised: by how much nearer surfaces may be at first, and since when. What lies on each
- * other is led apart, the slower the less is left of it: by a speed that falls by a hundredth of what gravity takes, so that nothing
- * is thrown, and piles of dozens of layers stay together. */
+/* Of a rule that meets: by how much nearer surfaces may be at first, and since when, where they are nearer than their thickness without
+ * having come so by themselves: when a world begins, a body joins it, the rule is enabled or a thickness raised. They are led apart, the
+ * slower the less is left of it: by a speed that falls by a hundredth of what gravity takes, so that nothing is thrown, and piles of
+ * dozens of layers stay together. */
 typedef struct sk_easing {
-    double less, since; /* m, s */
+    double less, since;      /* m, s */
+    uint32_t asks, asks_end; /* particles from which to which it is still to be found out how much is missing: none, if none */
 } sk_easing;
 /* How much of it is left at a time, m. */
 static inline double sk_easing_left(const sk_easing *easing, double time) {

@@ -37,11 +37,23 @@ double sk_object_number(const sk_object *object, const char *name) {
     return field ? sk_field_load(field, object->params).number[0] : 0;
 }
 
-void sk_world_ease_meeting(const skein_world *world, const sk_object *object, const char *field, double before) {
-    sk_force *force = object->as.force;
-    if (!force->type->meeting || !world->steps || strcmp(field, "thickness") != 0) return;
-    const double more = sk_object_number(object, field) - before;
-    force->easing = (sk_easing){fmax(0, sk_easing_left(&force->easing, world->time) + more), world->time};
+void sk_world_ease_meetings(skein_world *world, const sk_body *body) {
+    const uint32_t first = body ? body->first_particle : 0, end = body ? first + body->particle_count : UINT32_MAX;
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        sk_easing *easing = &world->rules.forces.data[i]->easing;
+        if (!world->rules.forces.data[i]->type->meeting) continue;
+        const bool others = easing->asks < easing->asks_end;
+        easing->asks = others && easing->asks < first ? easing->asks : first;
+        easing->asks_end = others && easing->asks_end > end ? easing->asks_end : end;
+    }
+}
+
+void sk_world_ease_changed(skein_world *world, const sk_object *object, const char *field) {
+    static const char *const of_rule[] = {"thickness", "enabled", "on", "ignore"};
+    const bool is_rule = object->category == SKEIN_FORCE && object->as.force->type->meeting;
+    for (size_t i = 0; is_rule && i < sizeof of_rule / sizeof *of_rule; i++)
+        if (!strcmp(field, of_rule[i])) object->as.force->easing.asks = 0, object->as.force->easing.asks_end = UINT32_MAX;
+    if (object->category == SKEIN_BODY && !strcmp(field, "contact.thickness")) sk_world_ease_meetings(world, object->as.body);
 }
 
 /* Bodies with what they are called, so that rules can tell them apart. */
@@ -210,7 +222,9 @@ skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_e
 void sk_world_tell_of_meetings(skein_world *world) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         sk_force *force = world->rules.forces.data[i];
-        if (*force->enabled && force->type->meeting && force->type->meeting->gave_up(force))
+        bool first = false;
+        if (*force->enabled && force->type->meeting) world->contact_overflows += force->type->meeting->gave_up(force, &first);
+        if (first)
             sk_world_log(world, SKEIN_LOG_WARNING,
                          "%s: more pairs were near each other than there is room for, and nothing touched for a substep "
                          "or more: the thickness is too large for the bodies, or they have blown up",

@@ -164,7 +164,7 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
     }
     *force = (sk_force){
         .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled,
-        .on = &object->common.plain.on};
+        .on = &object->common.plain.on, .easing = {.asks_end = UINT32_MAX}};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);
@@ -366,6 +366,7 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
     body->first_triangle = triangles;
     body->triangle_count = world->triangles.count - triangles;
     sk_world_reuse_indices(world, body, batches, limits);
+    sk_world_ease_meetings(world, body);
     if (!object->common.plain.enabled) sk_world_enable_body(world, body, false);
     return finish_object(world, object, handle);
 }

@@ -20,6 +20,7 @@ skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enable
     sk_body_forget_rest(world, body);
     sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count,
                               enabled ? SK_HERE : SK_ASIDE);
+    if (enabled) sk_world_ease_meetings(world, body);
     mark(world);
     return SKEIN_OK;
 }

@@ -256,7 +256,7 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
         const char *given = sk_field_load(field, params).text;
         sk_label_copy(object->label, sizeof object->label, given[0] ? given : object->kind->name);
     }
-    if (!same && object && object->category == SKEIN_FORCE) sk_world_ease_meeting(world, object, name, before.number[0]);
+    if (!same && object) sk_world_ease_changed(world, object, name);
     if (!same) rouse(world, object, name, place);
     else if (object && object->category == SKEIN_BODY) sk_world_rouse_at(world, object->as.body->first_particle, object->as.body->particle_count);
     world->plan_stale = true;

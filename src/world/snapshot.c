@@ -12,8 +12,8 @@
  *              whether all are to wake
  *   surfaces   from version 4 on: of how many colliders a program leads the vertices, and of each its place among the objects, where
  *              they are, and where they are to go in the next step
- *   easings    from version 5 on: of how many rules of contact a thickness that was raised is still eased, and of each its place among
- *              the objects, by how much it was raised, and when
+ *   easings    from version 5 on: of how many rules of contact a thickness is still eased, and of each its place among
+ *              the objects, how much was missing, since when, and from which to which particle that is still to be found out
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
@@ -256,7 +256,9 @@ static void put_surfaces(sk_byte_writer *w, const skein_world *world) {
 }
 
 static bool is_eased(const skein_world *world, const sk_object *object) {
-    return object->category == SKEIN_FORCE && sk_easing_left(&object->as.force->easing, world->time) > 0;
+    if (object->category != SKEIN_FORCE || !object->as.force->type->meeting) return false;
+    const sk_easing *easing = &object->as.force->easing;
+    return easing->asks < easing->asks_end || sk_easing_left(easing, world->time) > 0;
 }
 
 static uint32_t count_eased(const skein_world *world) {
@@ -272,6 +274,7 @@ static void put_easings(sk_byte_writer *w, const skein_world *world) {
         const sk_easing *easing = &world->objects.data[i]->as.force->easing;
         sk_put_u32(w, (uint32_t)i);
         sk_put_f64(w, easing->less), sk_put_f64(w, easing->since);
+        sk_put_u32(w, easing->asks), sk_put_u32(w, easing->asks_end);
     }
 }
 
@@ -676,16 +679,17 @@ static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_
 static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
     const uint32_t count = version > 4 ? sk_take_u32(r) : 0;
     uint32_t next = 0;
-    for (size_t i = 0; i < world->rules.forces.count && apply; i++) world->rules.forces.data[i]->easing = (sk_easing){0, 0};
+    for (size_t i = 0; i < world->rules.forces.count && apply; i++) world->rules.forces.data[i]->easing = (sk_easing){.less = 0};
     for (uint32_t i = 0; i < count && !r->short_; i++) {
         const uint32_t index = sk_take_u32(r);
         const double less = sk_take_f64(r), since = sk_take_f64(r);
+        const uint32_t asks = sk_take_u32(r), end = sk_take_u32(r);
         const sk_object *object = index < world->objects.count ? world->objects.data[index] : NULL;
+        const bool asks_well = asks < end ? end <= world->particles.count || end == UINT32_MAX : !asks && !end;
         if (r->short_ || index < next || !object || object->category != SKEIN_FORCE ||
-            !object->as.force->type->meeting || !(less >= 0 && less <= SK_FAR) ||
-            !(fabs(since) <= SK_FAR))
+            !object->as.force->type->meeting || !(less >= 0 && less <= SK_FAR) || !(fabs(since) <= SK_FAR) || !asks_well)
             return fail_short(error);
-        if (apply) object->as.force->easing = (sk_easing){less, since};
+        if (apply) object->as.force->easing = (sk_easing){less, since, asks, end};
         next = index + 1;
     }
     return r->short_ || sk_left(r) ? fail_short(error) : SKEIN_OK;

@@ -145,6 +145,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->solver_failures = world->solve.failures;
     statistics->all_unsolved = world->unsolved;
     statistics->all_solver_failures = world->solver_failures;
+    statistics->contact_overflows = world->contact_overflows;
     statistics->particles = all->count - all->out_count + all->asleep_count;
     statistics->asleep = all->asleep_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet

@@ -315,10 +315,10 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     return status;
 }
 
-/* Where time jumps, nothing is on its way: neither colliders, nor who is led apart. */
+/* Where time jumps, nothing is on its way: no collider, and who is to be led apart is asked anew. */
 static void stop_what_moves(skein_world *world) {
     for (size_t i = 0; i < world->rules.colliders.count; i++) sk_collider_stop(world->rules.colliders.data[i]);
-    for (size_t i = 0; i < world->rules.forces.count; i++) world->rules.forces.data[i]->easing = (sk_easing){0, 0};
+    sk_world_ease_meetings(world, NULL);
 }
 
 skein_status skein_world_reset(skein_world *world) {
@@ -334,7 +334,7 @@ skein_status skein_world_reset(skein_world *world) {
     stop_what_moves(world);
     world->time = 0;
     sk_world_place_colliders(world);
-    world->steps = world->substeps = world->unsolved = world->solver_failures = 0;
+    world->steps = world->substeps = world->unsolved = world->solver_failures = world->contact_overflows = 0;
     sk_record_reset(world);
     return SKEIN_OK;
 }

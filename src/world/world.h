@@ -210,6 +210,7 @@ struct skein_world {
     double time;
     uint64_t steps, substeps;
     uint64_t unsolved, solver_failures; /* of all steps, where a method solves */
+    uint64_t contact_overflows;         /* and how often contact gave up */
     double first_energy;        /* J, when the first step began */
     sk_solve solve;             /* of the last step */
     sk_matrix matrix;           /* where a plan factors one, and the solver */
@@ -356,8 +357,9 @@ bool sk_world_stands(const skein_world *world, const sk_body *body);
 bool sk_world_list_sleepers(skein_world *world, const char *names, sk_only *only);
 /* Shows what can meet to the rules that meet. Whom they act on is found. */
 skein_status sk_world_prepare_meetings(skein_world *world, skein_error *error);
-/* Of a rule that meets and has been told a larger thickness in the midst of a run: who touches is led apart by that, not thrown. */
-void sk_world_ease_meeting(const skein_world *world, const sk_object *object, const char *field, double before);
+/* Rules that meet may find what has not been led apart by them yet (sk_easing): of a body or of all, or where a field was set. */
+void sk_world_ease_meetings(skein_world *world, const sk_body *body);
+void sk_world_ease_changed(skein_world *world, const sk_object *object, const char *field);
 /* How many edges go through triangles that they are not to pass. */
 skein_status sk_world_count_crossings(skein_world *world, size_t *count, skein_error *error);
 /* Warns of contact that gave up in a step, once for each rule. */
