@@ -129,17 +129,18 @@ static void write_hold(sk_plan_builder *builder, const sk_batch *batch) {
                                        .end = builder->slot_count});
 }
 
-/* Between the last half of sweeps surfaces push apart what is near, and colliders hold whom they hold up. Where a few vertices lie on a
+/* Between sweeps colliders hold whom they hold up, and now and then surfaces push apart what is near. Where a few vertices lie on a
  * corner, and all around hangs, what comes after all sweeps undoes what they have done: 33 x 33 on a box, with a limit of 2 %, kept 39, 17.5
  * and 5.7 % at rest (5, 10 and 20 substeps), on a jelly cube 38, 13 and 4.7; now 3.4, 2.1 and 2.0, and 2.5, 2.0 and 2.0; 100 x 100 106 (10),
  * now 7, with 8 of 33 sweeps so 23, with all 7. (More sweeps after the colliders, with their planes held: 12, 2.6 and 2.0, for what these had
  * done to velocities was done. Two faces meet at a corner, and who is pulled in there is nearer to the other one: by the face that he has come
- * into now, not by that he lay on, 35 % with 5 substeps. Held from the prediction on: no better.) Methods that solve for velocities have all
+ * into now, not by that he lay on, 35 % with 5 substeps. Held from the prediction on: no better. Surfaces that push after every sweep: as firm, and
+ * heaps of 64 x 64 with a limit take 1.5 times as long at rest.) Methods that solve for velocities have all
  * of this in one system: 0.2 %. */
-static void write_pushes(sk_plan_builder *builder, bool (*takes_part)(const sk_batch *batch), bool first, bool last) {
+static void write_pushes(sk_plan_builder *builder, bool (*takes_part)(const sk_batch *batch), bool first, bool apart) {
     const sk_rules *rules = builder->rules;
     builder->strained = &rules->strained;
-    if (!first && !last) sk_write_meetings(builder, SK_MEETING_PUSH_ON, SK_NONE);
+    if (apart) sk_write_meetings(builder, SK_MEETING_PUSH_ON, SK_NONE);
     builder->strained = NULL;
     for (size_t i = 0; i < rules->batches.count && sk_writes_contacts(rules); i++) {
         if (!takes_part(rules->batches.data[i])) continue;
@@ -160,12 +161,16 @@ static int more_sweeps_of(const sk_rules *rules) {
 
 /* The same where nobody has set a limit, for edges that are firm all the same (world/strained.c). The largest stretch of a sheet that lies on a
  * box in percent, with 5, 10 and 20 substeps: 33 x 33 50, 24 and 6 before, 12, 5 and 5 now; irregular 57, 22 and 14, now 13, 5 and 5; 64 x 64
- * 120, 48 and 21, now 26, 8 and 5; 100 x 100 207, 104 and 43, now 34, 11 and 6. Its frames take 1.4 to 2.3 times as long. Where surfaces meet
- * there is none of this: a heap of 100 x 100 that lies had 6 % instead of 16, and took twice as long. */
+ * 120, 48 and 21, now 26, 8 and 5; 100 x 100 207, 104 and 43, now 34, 11 and 6. Its frames take 1.4 to 2.3 times as long.
+ *
+ * Where surfaces meet they push once, halfway: 33 x 33 on a box had 22 % at rest and 36 at most, and has 6 and 12; 64 x 64 44 and 106, now 8 and 19.
+ * Heaps of 64 x 64 and 100 x 100 that had 7 to 15 % at rest and 58 to 85 at the impact have 5 to 9 and 12 to 35, their worst frames are as long or
+ * shorter, and their mean takes 0.95 to 1.5 times as long, for there is always an edge at its bound, and a push is most of it. Not at all: 30 % at the
+ * impact of 64 x 64; in every fourth turn: 10 to 15, and heaps of 100 x 100 take 1.2 to 1.7 times as long at rest. */
 static void write_more_sweeps(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     const int most = more_sweeps_of(rules);
-    if (!most || !sk_writes_contacts(rules) || sk_writes_meetings(builder)) return;
+    if (!most || !(sk_writes_contacts(rules) || sk_writes_meetings(builder))) return;
     builder->sweeps_more = true;
     write_pushes(builder, sk_batch_is_firm, true, false);
     for (int turn = 0; turn < most; turn++) {
@@ -174,9 +179,12 @@ static void write_more_sweeps(sk_plan_builder *builder) {
             for (size_t w = 0; sk_batch_is_firm(batch) && w < batch->sweep_count; w++)
                 add_limit_sweep(builder, batch, &batch->sweeps[w], SK_NONE, turn ? beyond : 1, &batch->strained);
         }
-        write_pushes(builder, sk_batch_is_firm, false, turn + 1 == most);
+        write_pushes(builder, sk_batch_is_firm, false, turn == most / 2);
     }
 }
+
+/* How many sweeps over limits there are to a push of surfaces. */
+enum { SWEEPS_A_PUSH = 3 };
 
 /* Limits of all edges, again and again. */
 static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity) {
@@ -193,7 +201,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity) {
                 add_limit_sweep(builder, batch, &batch->sweeps[w], velocity, own ? beyond : 1, always ? NULL : &batch->strained);
             }
         }
-        if (turn >= alone) write_pushes(builder, limits_strain, false, turn + 1 == most);
+        if (turn >= alone) write_pushes(builder, limits_strain, false, turn + 1 < most && (most - turn) % SWEEPS_A_PUSH == 0);
     }
 }
 
