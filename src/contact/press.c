@@ -40,14 +40,13 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
     const real h = (real)op->dt, distance = pairs->distance[k];
     const uint32_t v[4] = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]};
     const real thickness = sk_pair_goal(touch, v[0], v[2], pairs->thickness[k], distance);
-    real resist = 0;
     if (distance < SK_NO_GAP * touch->thickness) touch->tangle.forced = true; // rounding chooses its side
     sk_weights_of(pairs, sort, k, press->weight);
     for (int c = 0; c < 4; c++) {
         press->slot[c] = touch->slot[v[c]];
         press->at[c] = v[c];
-        resist += press->weight[c] * press->weight[c] * touch->inverse[v[c]];
     }
+    const real resist = sk_pair_resist(touch, v, press->weight);
     if (!(resist > 0)) return false;
     press->normal = (sk_vec3){pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
     const real stiffness = 4, part = (real)0.25, nearest = (real)0.005; // the last: of the thickness

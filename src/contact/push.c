@@ -11,7 +11,7 @@ static inline real dot_of(sk_quad a, sk_quad b) {
 
 /* Pushes a pair apart to the distance that it is to have, and rubs it by what that took. */
 static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k, real gain, real friction) {
-    real weight[4], resist = 0;
+    real weight[4];
     const uint32_t v[4] = {near->corner[0][k], near->corner[1][k], near->corner[2][k], near->corner[3][k]};
     sk_vec4 *q = touch->q;
     sk_weights_of(near, sort, k, weight);
@@ -20,7 +20,7 @@ static void push_pair(sk_touch *touch, const sk_pairs *near, int sort, size_t k,
     real goal = sk_pair_goal(touch, v[0], v[2], near->thickness[k], near->distance[k]);
     real wanted = sk_min(goal, near->distance[k] + gain), missing = wanted - dot_of(n, apart);
     if (!(missing > 0)) return; // as of most
-    for (int c = 0; c < 4; c++) resist += weight[c] * weight[c] * touch->inverse[v[c]];
+    const real resist = sk_pair_resist(touch, v, weight);
     if (!(resist > 0)) return;
     sk_quad slip = apart - sk_quad_sum(touch->p, v, weight);
     slip[3] = 0;

@@ -56,6 +56,7 @@ static void look_at_all(sk_touch *touch) {
 static bool list_near(sk_touch *touch, sk_allocator *allocator) {
     bool good = true;
     for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, allocator, sort);
+    if (good) sk_touch_choose_sides(touch);
     return good;
 }
 
