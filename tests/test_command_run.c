@@ -44,6 +44,7 @@ static void judge_report(const json_t *report, int frames) {
         {"asleep_particles", 0, 1e6},
         {"worst_crossings_of_run", 0, 0},
         {"crossed_frames", 0, 0},
+        {"contact_overflows", 0, 0},
         {"unsolved", 0, 0},
         {"solver_failures", 0, 0},
         {"nonfinite_particles", 0, 0},

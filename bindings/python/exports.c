@@ -197,8 +197,8 @@ const char *py_statistics_member(size_t index, size_t *offset, size_t *size, boo
         MEMBER(elastic_energy), MEMBER(dissipated_energy), MEMBER(momentum), MEMBER(angular_momentum),
         MEMBER(max_stretch), MEMBER(p99_stretch), MEMBER(limited), MEMBER(over_limit), MEMBER(most_over_limit),
         MEMBER(residual), MEMBER(unsolved), MEMBER(newton_iterations), MEMBER(cg_iterations), MEMBER(solver_factors),
-        MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(max_penetration),
-        MEMBER(contacts), MEMBER(crossings), MEMBER(contact_overflows), MEMBER(particles), MEMBER(pinned_particles), MEMBER(constraints),
+        MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(contact_overflows), MEMBER(max_penetration),
+        MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(pinned_particles), MEMBER(constraints),
         MEMBER(asleep), MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
     };
     if (index >= sizeof members / sizeof *members) return NULL;

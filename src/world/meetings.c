@@ -49,11 +49,12 @@ void sk_world_ease_meetings(skein_world *world, const sk_body *body) {
 }
 
 void sk_world_ease_changed(skein_world *world, const sk_object *object, const char *field) {
-    static const char *const of_rule[] = {"thickness", "enabled", "on", "ignore"};
+    static const char *const of_rule[] = {"thickness", "enabled", "on", "ignore"}, *const of_body[] = {"contact.thickness", "name", "groups"};
     const bool is_rule = object->category == SKEIN_FORCE && object->as.force->type->meeting;
     for (size_t i = 0; is_rule && i < sizeof of_rule / sizeof *of_rule; i++)
         if (!strcmp(field, of_rule[i])) object->as.force->easing.asks = 0, object->as.force->easing.asks_end = UINT32_MAX;
-    if (object->category == SKEIN_BODY && !strcmp(field, "contact.thickness")) sk_world_ease_meetings(world, object->as.body);
+    for (size_t i = 0; object->category == SKEIN_BODY && i < sizeof of_body / sizeof *of_body; i++)
+        if (!strcmp(field, of_body[i])) sk_world_ease_meetings(world, object->as.body);
 }
 
 /* Bodies with what they are called, so that rules can tell them apart. */
