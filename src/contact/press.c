@@ -40,7 +40,7 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
     const real h = (real)op->dt, distance = pairs->distance[k];
     const uint32_t v[4] = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]};
     const real thickness = sk_pair_goal(touch, v[0], v[2], pairs->thickness[k], distance);
-    if (distance < SK_NO_GAP * touch->thickness) touch->tangle.forced = true; // rounding chooses its side
+    if (distance < SK_NO_GAP * touch->thickness) sk_touch_choose_side(touch, sort, entry);
     sk_weights_of(pairs, sort, k, press->weight);
     for (int c = 0; c < 4; c++) {
         press->slot[c] = touch->slot[v[c]];

@@ -48,7 +48,7 @@ static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
             uint32_t entry = touch->near[sort].data[i];
             const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
             size_t k = entry / 2;
-            if (pairs->distance[k] < none) touch->tangle.forced = true; // rounding chooses its side
+            if (pairs->distance[k] < none) sk_touch_choose_side(touch, sort, entry);
             real friction = sk_pair_friction(touch, pairs->corner[0][k], pairs->corner[2][k], (real)params->friction);
             push_pair(touch, pairs, sort, k, gain, friction);
         }

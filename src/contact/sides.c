@@ -30,12 +30,16 @@ static void choose_side(const sk_touch *touch, sk_pairs *pairs, size_t k) {
     pairs->normal[0][k] = scale * n.x, pairs->normal[1][k] = scale * n.y, pairs->normal[2][k] = scale * n.z;
 }
 
+void sk_touch_choose_side(sk_touch *touch, int sort, uint32_t entry) {
+    touch->tangle.forced = true; // it may be the wrong one all the same
+    choose_side(touch, entry & 1 ? &touch->late[sort] : &touch->kept[sort], entry / 2);
+}
+
 void sk_touch_choose_sides(sk_touch *touch) {
     const real none = SK_NO_GAP * touch->thickness;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->near[sort].count; i++) {
             const uint32_t entry = touch->near[sort].data[i];
-            sk_pairs *pairs = entry & 1 ? &touch->late[sort] : &touch->kept[sort];
-            if (pairs->distance[entry / 2] < none) choose_side(touch, pairs, entry / 2);
+            if (sk_pairs_of(touch, sort, entry)->distance[entry / 2] < none) sk_touch_choose_side(touch, sort, entry);
         }
 }

@@ -56,13 +56,14 @@ static void look_at_all(sk_touch *touch) {
 static bool list_near(sk_touch *touch, sk_allocator *allocator) {
     bool good = true;
     for (int sort = 0; sort < SK_PAIR_SORTS && good; sort++) good = sk_touch_find_near(touch, allocator, sort);
-    if (good) sk_touch_choose_sides(touch);
     return good;
 }
 
 bool sk_touch_look_again(sk_touch *touch, sk_allocator *allocator) {
     look_at_all(touch);
-    return list_near(touch, allocator);
+    if (!list_near(touch, allocator)) return false;
+    sk_touch_choose_sides(touch); // as the solve that comes to be bound has taken them
+    return true;
 }
 
 bool sk_touch_renew(sk_touch *touch, sk_allocator *allocator, sk_touch_search_sort search) {

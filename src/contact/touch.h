@@ -326,7 +326,9 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 
 /* ---- sides.c ---- */
 
-/* Gives pairs of two surfaces that are in one place the normal that all of these are to have. */
+/* Gives a pair without a gap the normal that all pairs of its surfaces have, where these are in one place. */
+void sk_touch_choose_side(sk_touch *touch, int sort, uint32_t entry);
+/* The same of all that are near and have none. */
 void sk_touch_choose_sides(sk_touch *touch);
 
 /* ---- touch.c ---- */
@@ -379,8 +381,8 @@ static inline void sk_weights_of(const sk_pairs *pairs, int sort, size_t k, real
     weight[3] = -v;
 }
 /* How easily features of such weights are moved apart, 1/kg: the sum of w^2 / m. Where one is all but held by a pin, beside which it
- * touches, its far end would have to go a long way: it goes no further than twice what is missing, as pairs of features that are free
- * never do. (Three curtains in one place, pinned along their upper edges, had 1e11 J.) */
+ * touches, its far end would have to go a long way: it goes no further than twice what is missing, as pairs of features that are free,
+ * and as heavy at all corners, never do. (Three curtains in one place, pinned along their upper edges, had 1e11 J.) */
 static inline real sk_pair_resist(const sk_touch *touch, const uint32_t v[4], const real weight[4]) {
     real resist = 0, most = 0;
     for (int c = 0; c < 4; c++) {

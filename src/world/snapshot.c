@@ -13,7 +13,7 @@
  *   surfaces   from version 4 on: of how many colliders a program leads the vertices, and of each its place among the objects, where
  *              they are, and where they are to go in the next step
  *   easings    from version 5 on: of how many rules of contact a thickness is still eased, and of each its place among
- *              the objects, how much was missing, since when, and from which to which particle that is still to be found out
+ *              the objects, how much was missing and since when; from version 6 on also from which to which particle that is still to be found out
  *
  * What was built stays the world's: meshes, constraints and masses are compared by their hashes, and a world that is
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
@@ -261,20 +261,30 @@ static bool is_eased(const skein_world *world, const sk_object *object) {
     return easing->asks < easing->asks_end || sk_easing_left(easing, world->time) > 0;
 }
 
+/* Whether of any it is still to be found out how much is missing. */
+static bool any_asks(const skein_world *world) {
+    bool any = false;
+    for (size_t i = 0; i < world->rules.forces.count; i++) {
+        const sk_easing *easing = &world->rules.forces.data[i]->easing;
+        any |= world->rules.forces.data[i]->type->meeting && easing->asks < easing->asks_end;
+    }
+    return any;
+}
+
 static uint32_t count_eased(const skein_world *world) {
     uint32_t count = 0;
     for (size_t i = 0; i < world->objects.count; i++) count += is_eased(world, world->objects.data[i]);
     return count;
 }
 
-static void put_easings(sk_byte_writer *w, const skein_world *world) {
+static void put_easings(sk_byte_writer *w, const skein_world *world, bool asks) {
     sk_put_u32(w, count_eased(world));
     for (size_t i = 0; i < world->objects.count; i++) {
         if (!is_eased(world, world->objects.data[i])) continue;
         const sk_easing *easing = &world->objects.data[i]->as.force->easing;
         sk_put_u32(w, (uint32_t)i);
         sk_put_f64(w, easing->less), sk_put_f64(w, easing->since);
-        sk_put_u32(w, easing->asks), sk_put_u32(w, easing->asks_end);
+        if (asks) sk_put_u32(w, easing->asks), sk_put_u32(w, easing->asks_end);
     }
 }
 
@@ -288,7 +298,8 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     const bool any_eased = count_eased(world) > 0, any_led = any_eased || count_led(world) > 0, any_rests = any_led || count_resting(world) > 0;
     const bool any_cut = any_rests || count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
-    sk_put_u32(w, any_eased ? SK_SNAPSHOT_VERSION : any_led ? 4 : any_rests ? 3 : any_cut ? 2 : 1);
+    const bool asks = any_asks(world);
+    sk_put_u32(w, asks ? SK_SNAPSHOT_VERSION : any_eased ? 5 : any_led ? 4 : any_rests ? 3 : any_cut ? 2 : 1);
     sk_put_u32(w, sizeof(real));
     sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
     put_clock(w, world);
@@ -315,7 +326,7 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     if (any_cut) put_cuts(w, world);
     if (any_rests) put_rests(w, world);
     if (any_led) put_surfaces(w, world);
-    if (any_eased) put_easings(w, world);
+    if (any_eased) put_easings(w, world, asks);
 }
 
 void sk_snapshot_seal(unsigned char *bytes, size_t size) {
@@ -683,7 +694,7 @@ static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t
     for (uint32_t i = 0; i < count && !r->short_; i++) {
         const uint32_t index = sk_take_u32(r);
         const double less = sk_take_f64(r), since = sk_take_f64(r);
-        const uint32_t asks = sk_take_u32(r), end = sk_take_u32(r);
+        const uint32_t asks = version > 5 ? sk_take_u32(r) : 0, end = version > 5 ? sk_take_u32(r) : 0;
         const sk_object *object = index < world->objects.count ? world->objects.data[index] : NULL;
         const bool asks_well = asks < end ? end <= world->particles.count || end == UINT32_MAX : !asks && !end;
         if (r->short_ || index < next || !object || object->category != SKEIN_FORCE ||

@@ -6,7 +6,7 @@
 #include "world/world.h"
 
 /* The newest version. Written is the oldest that holds what there is: see snapshot.c. */
-enum { SK_SNAPSHOT_VERSION = 5, SK_SNAPSHOT_HEAD = 36 };
+enum { SK_SNAPSHOT_VERSION = 6, SK_SNAPSHOT_HEAD = 36 };
 
 void sk_put_value(sk_byte_writer *w, const skein_value *value);
 /* A text of it stands in the reader's bytes. */
