@@ -169,12 +169,16 @@ static skein_look look_of(const skein_world *world, skein_handle handle) {
     return (skein_look)value.number[0];
 }
 
-static bool make_body(body *b, const skein_world *world, const skein_surface *surface, skein_handle handle,
-                      const double *positions) {
+static bool make_body(body *b, const skein_world *world, const skein_surface *surface, skein_handle handle) {
+    const size_t count = skein_particle_count(world);
+    double *built = malloc(3 * count * sizeof *built + 1); // its first shape, whenever it is drawn first
     skein_look look = look_of(world, handle);
     skein_shape shape;
     release_body(b);
-    if (!render_body_mesh_make(&b->mesh, surface, positions, look == SKEIN_LOOK_JELLY)) return false;
+    const bool good = built && skein_positions_built(world, 0, count, built) == SKEIN_OK &&
+                      render_body_mesh_make(&b->mesh, surface, built, look == SKEIN_LOOK_JELLY);
+    free(built);
+    if (!good) return false;
     b->handle = handle;
     b->rope = skein_shape_of(world, handle, &shape) == SKEIN_OK && shape.sort == SKEIN_SHAPE_CHAIN;
     b->look = look;
@@ -256,7 +260,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
                 b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
                 b->source.vertex_count == surface.vertex_count && b->look == look_of(world, handle);
-    if (!same && !make_body(b, world, &surface, handle, made->state.positions))
+    if (!same && !make_body(b, world, &surface, handle))
         return render_fail_memory(error, "a body's surface");
     if (!leave_out_cut(b, world)) return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);

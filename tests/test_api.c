@@ -522,6 +522,13 @@ static void views_and_copies_agree(void **state) {
     FAILS(s.world, SKEIN_ERROR_VALUE, "the world has 51", skein_positions_copy(s.world, 50, 2, part));
     FAILS(s.world, SKEIN_ERROR_VALUE, "the world has 51", skein_positions_copy(s.world, 52, 0, part));
     FAILS(s.world, SKEIN_ERROR_VALUE, "the world has 51", skein_velocities_copy(s.world, SIZE_MAX, 2, part));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "the world has 51", skein_positions_built(s.world, 50, 2, part));
+    double built[51 * 3];
+    OK(s.world, skein_positions_built(s.world, 0, count, built));
+    assert_memory_not_equal(built, x, sizeof built);
+    OK(s.world, skein_world_reset(s.world));
+    OK(s.world, skein_positions_copy(s.world, 0, count, x));
+    assert_memory_equal(built, x, sizeof built);
     skein_world_destroy(s.world);
 }
 

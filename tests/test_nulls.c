@@ -204,6 +204,7 @@ static void reading_and_writing(void **state) {
     assert_true(!skein_velocity_view(NULL).xyzw && !skein_velocity_view(NULL).count);
     REFUSES("out", skein_positions_copy(s.world, 0, 1, NULL));
     REFUSES("out", skein_velocities_copy(s.world, 0, 1, NULL));
+    REFUSES("out", skein_positions_built(s.world, 0, 1, NULL));
     REFUSES("out", skein_snapshot_write(s.world, NULL, 1, NULL));
     REFUSES("bytes", skein_snapshot_read(s.world, NULL, 1));
     REFUSES_ALL(skein_snapshot_write(NULL, xyz, 1, NULL));
@@ -250,6 +251,7 @@ static void reading_and_writing(void **state) {
     REFUSES("pose", skein_collider_pose(s.world, s.ball, NULL));
     REFUSES_ALL(skein_positions_copy(NULL, 0, 1, xyz));
     REFUSES_ALL(skein_velocities_copy(NULL, 0, 1, xyz));
+    REFUSES_ALL(skein_positions_built(NULL, 0, 1, xyz));
     REFUSES_ALL(skein_positions_copy_to(NULL, 0, 1, skein_doubles(xyz, 0)));
     REFUSES_ALL(skein_velocities_copy_to(NULL, 0, 1, skein_doubles(xyz, 0)));
     REFUSES_ALL(skein_positions_blend(NULL, 1, 0, 1, xyz));

@@ -575,6 +575,23 @@ static skein_world *square_mesh(const float *corner_uv) {
     return world;
 }
 
+/* What a mesh without coordinates shows is laid on its first shape, whatever shape it has when it is drawn first. */
+static void a_pattern_is_laid_on_the_first_shape(void **state) {
+    (void)state;
+    float flat[2 * 6];
+    size_t count = 0;
+    for (int folded = 0; folded < 2; folded++) {
+        skein_world *world = square_mesh(NULL);
+        const double place[6] = {0.5, 0.8, 1, -0.5, 0.9, 1};
+        if (folded) OK(skein_positions_set(world, 2, 2, place));
+        const render_surface *surface = &update(world)->surfaces[0];
+        assert_true(surface->vertex_count <= 6);
+        if (folded) assert_true(surface->vertex_count == count && !memcmp(surface->uv, flat, 2 * count * sizeof *flat));
+        memcpy(flat, surface->uv, 2 * (count = surface->vertex_count) * sizeof *flat);
+        skein_world_destroy(world);
+    }
+}
+
 static void an_image_lies_the_right_way_up(void **state) {
     (void)state;
     char path[256];
@@ -862,6 +879,7 @@ int main(void) {
         VIEW_TEST(colliders_follow_at_once),
         VIEW_TEST(ground_grid_and_axes),
         VIEW_TEST(the_plain_light_casts_no_shadow),
+        VIEW_TEST(a_pattern_is_laid_on_the_first_shape),
         VIEW_TEST(an_image_lies_the_right_way_up),
         VIEW_TEST(a_seam_has_its_vertices_twice),
         VIEW_TEST(a_checker_repeats_as_often_as_asked),

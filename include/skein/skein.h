@@ -531,6 +531,8 @@ skein_view skein_velocity_view(const skein_world *world); /* w is the mass, kg (
  * SKEIN_ERROR_VALUE where there are not so many. */
 skein_status skein_positions_copy(const skein_world *world, size_t first, size_t count, double *out);
 skein_status skein_velocities_copy(const skein_world *world, size_t first, size_t count, double *out);
+/* The same of where they were built, and are after skein_world_reset(). */
+skein_status skein_positions_built(const skein_world *world, size_t first, size_t count, double *out);
 /* The same into memory of any layout, a vertex buffer's, say. */
 skein_status skein_positions_copy_to(const skein_world *world, size_t first, size_t count, skein_buffer to);
 skein_status skein_velocities_copy_to(const skein_world *world, size_t first, size_t count, skein_buffer to);

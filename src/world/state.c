@@ -91,6 +91,17 @@ skein_status skein_velocities_copy(const skein_world *world, size_t first, size_
     return copy_out(world, SK_V, first, count, out);
 }
 
+skein_status skein_positions_built(const skein_world *world, size_t first, size_t count, double *out) {
+    SK_NEED(world, world);
+    if (count) SK_NEED(world, out);
+    skein_status status = sk_world_check_range(world, first, count);
+    for (size_t i = 0; i < count && !status; i++) {
+        const sk_vec3 p = world->particles.built[first + i];
+        out[3 * i] = (double)p.x, out[3 * i + 1] = (double)p.y, out[3 * i + 2] = (double)p.z;
+    }
+    return status;
+}
+
 skein_status skein_positions_blend(const skein_world *world, double blend, size_t first, size_t count, double *out) {
     SK_NEED(world, world);
     if (count) SK_NEED(world, out);

@@ -201,6 +201,7 @@ CALLS = {
     "skein_body_asleep": (c.c_bool, [world, Handle]),
     "skein_positions_copy": (status, [world, size, size, array]),
     "skein_velocities_copy": (status, [world, size, size, array]),
+    "skein_positions_built": (status, [world, size, size, array]),
     "skein_positions_copy_to": (status, [world, size, size, Buffer]),
     "skein_velocities_copy_to": (status, [world, size, size, Buffer]),
     "skein_positions_set": (status, [world, size, size, array]),
