@@ -323,10 +323,10 @@ static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **stat
 /* All that come along: each has one hash, or is refused, as these are. */
 static void every_scene_has_one_hash_or_is_refused(void **state) {
     (void)state;
-    static const char *const refused[] = {"cantilever", "funnel", "heap", "layers", "reef", "ribbons", "tear", "twist"};
+    static const char *const refused[] = {"cantilever", "funnel", "heap", "layers", "reef", "ribbons", "statue", "tear", "twist"};
     DIR *scenes = opendir("scenes");
     int shared = 0;
-    size_t said_no = 0;
+    size_t said_no = 0, missing = 0; // the latter where no mesh was fetched: `make demo` does so
     assert_non_null(scenes);
     for (struct dirent *entry; (entry = readdir(scenes)) != NULL;) {
         char name[200], arguments[1200], path[400], *said;
@@ -337,6 +337,7 @@ static void every_scene_has_one_hash_or_is_refused(void **state) {
         bool there = o.status == 0;
         if (!there && !strstr(o.err, "tools/fetch-mesh")) fail_msg("%s: %s", name, o.err); // it needs a mesh that does not come along
         outcome_free(&o);
+        missing += !there;
         if (!there) continue;
         snprintf(arguments, sizeof arguments, "%s --frames 3 --set 'output=[]' --threads 1 --quiet --out %s", path, in_folder("by_ranks"));
         int status = run_ranks(3, arguments, &said);
@@ -349,7 +350,7 @@ static void every_scene_has_one_hash_or_is_refused(void **state) {
         free(said);
     }
     closedir(scenes);
-    assert_int_equal(said_no, COUNT(refused));
+    assert_true(said_no + missing >= COUNT(refused) && said_no <= COUNT(refused));
     assert_true(shared >= 25);
 }
 
