@@ -6,18 +6,18 @@
 #include <skein/inside/group_walk.h>
 
 /* A walk that serves two modes. Where bytes are dear (SK_SMALL: a page waits for them) it is there once and is told the
- * mode, which costs up to a twelfth of its time; elsewhere the mode is a constant where it is inlined. So it is of pairs,
- * which are short, and most elements are; but not of those that only pull, which few cloths have, nor over the ends of
- * strips, which few elements cross. */
+ * mode, which costs up to an eighth of its time; elsewhere the mode is a constant where it is inlined. So it is there of
+ * projections of pairs that keep their multipliers, which are short, and most elements are; but not of those that only
+ * pull, which few cloths have. */
 #ifdef SK_SMALL
-#define SK_TOLD_AT_ENDS static __attribute__((noinline))
-#else
-#define SK_TOLD_AT_ENDS SK_INLINE
-#endif
-#if defined SK_SMALL && (SK_ARITY > 2 || defined SK_ONE_SIDED)
-#define SK_TOLD SK_TOLD_AT_ENDS
+#define SK_TOLD static __attribute__((noinline))
 #else
 #define SK_TOLD SK_INLINE
+#endif
+#if defined SK_SMALL && SK_ARITY == 2 && !defined SK_ONE_SIDED
+#define SK_TOLD_KEPT SK_INLINE
+#else
+#define SK_TOLD_KEPT SK_TOLD
 #endif
 
 /* A part of a packed block. */
@@ -216,7 +216,7 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
 
 /* Adds the forces of a span in strip row r to those of its particles that lie in the requested rows (`gets`). */
 SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
-                         size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
+                        size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
     offsets o = offsets_of(sweep, span, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
@@ -279,8 +279,8 @@ SK_INLINE void pull_strips(sk_run *run, const sk_op *op, size_t begin, size_t en
 SK_INLINE sk_element_mode sum_mode(bool applies) {
     return applies ? SK_MODE_APPLY : SK_MODE_FORCE;
 }
-SK_TOLD_AT_ENDS void sum_turned(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
-                         size_t r, const sk_span *span, const bool *gets, bool applies) {
+SK_TOLD void sum_turned(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
+                        size_t r, const sk_span *span, const bool *gets, bool applies) {
     pull_span(run, op, sweep, constants, r, span, true, gets, sum_mode(applies));
 }
 SK_TOLD void sum_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, bool applies, pull_walk *turned) {
@@ -353,19 +353,23 @@ SK_WALKS(project, SK_MODE_PROJECT)
 
 /* Projections that keep their multipliers, with damping or without. */
 #ifdef SK_WITH_STRIPS
-SK_TOLD_AT_ENDS void keep_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
+SK_TOLD void keep_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
                          size_t end, const sk_span *span, const offsets *o, sk_half half, bool damped) {
     meet_span(run, sweep, constants, begin, end, span, o, half, true,
               damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
 }
 SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, half, false))
 SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, half, true))
+SK_TOLD_KEPT void keep_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
+    sweep_strips(run, op, begin, end, damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT,
+                 damped ? project_damped_turned : project_kept_turned);
+}
 void SK_KERNEL(project_damped_strips)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    if (sk_is_damped(op)) sweep_strips(run, op, begin, end, SK_MODE_PROJECT_DAMPED, project_damped_turned);
-    else sweep_strips(run, op, begin, end, SK_MODE_PROJECT_KEPT, project_kept_turned);
+    if (sk_is_damped(op)) keep_strips(run, op, begin, end, true);
+    else keep_strips(run, op, begin, end, false);
 }
 #endif
-SK_TOLD void keep_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
+SK_TOLD_KEPT void keep_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
     sweep_groups(run, op, begin, end, damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
 }
 void SK_KERNEL(project_damped_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {

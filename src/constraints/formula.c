@@ -256,9 +256,11 @@ void SK_KERNEL(force_groups)(sk_run *run, const sk_op *op, size_t begin, size_t 
 }
 void SK_KERNEL(project_groups)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     switch (((const sk_sweep *)op->rule)->batch->arity) {
+#ifndef SK_SMALL // where bytes are dear, one walk serves all, as it does when forces are summed
     case 2: walk(run, op, begin, end, SK_MODE_PROJECT, meet_2); break;
     case 3: walk(run, op, begin, end, SK_MODE_PROJECT, meet_3); break;
     case 4: walk(run, op, begin, end, SK_MODE_PROJECT, meet_4); break;
+#endif
     default: walk(run, op, begin, end, SK_MODE_PROJECT, meet_any);
     }
 }
