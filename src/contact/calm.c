@@ -256,10 +256,11 @@ static void know_thicknesses(sk_touch *touch) {
     }
 }
 
-/* How much more a patch may move without being looked at. */
+/* How much more a patch may move without being looked at: all of it in one substep, too. */
 static real room_of(const sk_calm_patch *patch, real any) {
     if (!patch->calm) return SK_REAL_MAX;
-    return sk_min(patch->slack - sk_sqrt(any), closing_share * (patch->distance - patch->slack));
+    const real moved = sk_sqrt(any);
+    return sk_min(patch->slack - moved, closing_share / (1 + closing_share) * (patch->distance - moved));
 }
 
 /* Whether a patch is left out by panels that are spread (spread.h), and so is of no interest. */
@@ -337,7 +338,7 @@ bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
 
 /* Whether a patch is calm, whatever shares of their ways vertices go; all squares. */
 static bool is_calm(const sk_calm_patch *patch, real moved, real way) {
-    const real most = closing_share * (patch->distance - patch->slack);
+    const real most = closing_share * (patch->distance - sk_sqrt(moved));
     return patch->calm && moved <= patch->slack * patch->slack && way <= most * most;
 }
 
