@@ -1,10 +1,11 @@
 /* Making the aggregates of a mesh, each of the hubs of the finer one before it, up to the coarsest.
  *
  * Measured on irregular meshes let go from level that swing by two corners, 10 substeps, a little drag, 99th percentile and largest
- * stretch, the worst of all frames: 64 x 64 1.57 and 6.3 % (with spans alone 2.87 and 12), 128 x 128 2.57 and 11.8 (3.77 and 24), for
- * 1.4 times the time. Without the spans of spans.c 2.5 and 3; with those of one length 1.7 and 2.6. Shares that are exact for whatever
- * moves as a plane does (moving least squares) are no better: 1.8 and 2.8. Reaches of 1.3 to 2.5, shares squared, distances up to
- * 3 spacings, and one sweep or four change 64 by 0.2 % and 128 by 0.4, either way; spacings that begin at 4 edges cost 0.7. */
+ * stretch, the worst of all frames: 64 x 64 2.9 and 12 % (with spans alone 3.0 and 12), 128 x 128 2.8 and 22 (3.8 and 22), for 1.4 times the time.
+ * Where all hubs stood for themselves: 1.5 and 7.6, and 3.0 and 20; but meshes of regular triangles that hung by four corners blew up. Those
+ * of the finest level by a half or not at all 3.0 and 3.3 % of 128 x 128; altogether 2.6, but ten times the energy at rest. Shares that are exact for whatever
+ * moves as a plane does (moving least squares) are no better. Reaches of 1.2 to 2.5, shares squared, distances up to 3 spacings, and
+ * one sweep or four change 64 by 0.2 % and 128 by 0.4, either way; spacings that begin at 4 edges cost 0.7. */
 #include "bodies/aggregate.h"
 
 #include <math.h>
@@ -22,7 +23,8 @@ enum {
 };
 static const double
     reach = 1.6, /* hubs' distances that a vertex takes shares up to: a hub is within one */
-    long_way = 2; /* hubs that are nearer have a distance */
+    long_way = 2, /* hubs that are nearer have a distance */
+    finest_itself = 0.75; /* hubs of the finest level stand for themselves so far, and so are firmer */
 
 /* A hub that a member of the finer level is near. */
 typedef struct tie {
@@ -33,6 +35,7 @@ typedef struct tie {
 typedef struct level {
     uint32_t *particle; /* its members, or hubs, in the order of their ranks */
     double *mass;       /* that goes with each */
+    double (*mean)[3];  /* of the places, as they were built, of all that goes with each */
     size_t count;
     struct {
         tie *data;
@@ -43,7 +46,9 @@ typedef struct level {
 typedef struct builder {
     sk_allocator *allocator;
     sk_geodesic *geodesic;
+    const sk_sheet *sheet;
     const double *mass; /* of particles */
+    const bool *pinned;
     double edge;        /* m: a mean one */
     level level[MOST_LEVELS + 1]; /* the first: all particles */
     size_t count;
@@ -98,10 +103,36 @@ static double share_of(const builder *b, const tie *t) {
     return 1 - t->distance / (reach * b->spacing);
 }
 
+/* How much of what a hub of the level in the making stands for is its own place. */
+static double itself(const builder *b) {
+    return b->count == 1 ? finest_itself : 0;
+}
+
+static void add_times(double to[3], double factor, const double *place) {
+    for (int c = 0; c < 3; c++) to[c] += factor * place[c];
+}
+
+/* Where what hubs stand for was built: pinned ones stand for themselves. */
+static void find_means(const builder *b, const level *finer, level *l, const double *sum) {
+    memset(l->mean, 0, l->count * sizeof *l->mean);
+    for (size_t i = 0; i < l->count; i++) {
+        const uint32_t particle = l->particle[i], at = b->place[particle];
+        const bool alone = b->pinned[particle] || !(l->mass[i] > 0);
+        add_times(l->mean[i], alone ? 1 : itself(b) + (1 - itself(b)) * finer->mass[at] / l->mass[i], finer->mean[at]);
+    }
+    for (size_t i = 0; i < l->ties.count; i++) {
+        const tie *t = &l->ties.data[i];
+        if (b->hub_at[finer->particle[t->member]] != UINT32_MAX) continue;
+        if (b->pinned[l->particle[t->hub]] || !(l->mass[t->hub] > 0)) continue;
+        add_times(l->mean[t->hub], (1 - itself(b)) * share_of(b, t) / sum[t->member] * finer->mass[t->member] / l->mass[t->hub], finer->mean[t->member]);
+    }
+}
+
 /* The sums of what each member takes, and what hubs carry. */
 static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
     l->mass = sk_allocate(b->allocator, l->count * sizeof *l->mass);
-    if (!l->mass) return false;
+    l->mean = sk_allocate(b->allocator, l->count * sizeof *l->mean);
+    if (!l->mass || !l->mean) return false;
     memset(sum, 0, finer->count * sizeof *sum);
     for (size_t i = 0; i < l->ties.count; i++) sum[l->ties.data[i].member] += share_of(b, &l->ties.data[i]);
     for (size_t i = 0; i < l->count; i++) l->mass[i] = finer->mass[b->place[l->particle[i]]];
@@ -110,6 +141,7 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
         if (b->hub_at[finer->particle[t->member]] != UINT32_MAX) continue; // it goes its own way
         l->mass[t->hub] += share_of(b, t) / sum[t->member] * finer->mass[t->member];
     }
+    find_means(b, finer, l, sum);
     return true;
 }
 
@@ -125,7 +157,12 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
         return NULL;
     }
     a->times = SWEEPS;
-    for (size_t i = 0; i < l->count; i++) a->hub[i] = first + l->particle[i];
+    for (size_t i = 0; i < l->count; i++) {
+        const uint32_t particle = l->particle[i];
+        a->hub[i] = first + particle;
+        a->pinned[i] = b->pinned[particle] || !(l->mass[i] > 0);
+        a->own[i] = l->mass[i] > 0 ? (real)(itself(b) + (1 - itself(b)) * finer->mass[b->place[particle]] / l->mass[i]) : 1;
+    }
     for (size_t i = 0; i < finer->count; i++) {
         row[i] = UINT32_MAX;
         if (b->hub_at[finer->particle[i]] != UINT32_MAX) continue;
@@ -141,11 +178,25 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
         const uint32_t at = --a->start[row[t->member] + 1];
         a->of[at] = t->hub;
         a->share[at] = (real)(share_of(b, t) / sum[t->member]);
+        a->part[at] = l->mass[t->hub] > 0 ? (real)((1 - itself(b)) * share_of(b, t) / sum[t->member] * finer->mass[t->member] / l->mass[t->hub]) : 0;
     }
     for (size_t i = 0; i < carried; i++) a->start[i] = a->start[i + 1];
     a->start[carried] = (uint32_t)shares;
     sk_release(b->allocator, row);
     return a;
+}
+
+static double apart(const double *a, const double *b) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
+/* How far apart what two hubs stand for may be: as far as it was built; but where a sheet is bent, as far as when it is
+ * spread out, at least. A distance along an arc is longer than its chord, and what is around its ends lies off it by about as
+ * much again. */
+static double length_of(const builder *b, const level *l, const tie *pair) {
+    const double *first = b->sheet->position[l->particle[pair->member]], *second = b->sheet->position[l->particle[pair->hub]];
+    const double chord = apart(first, second), bent = chord > 0 ? fmax(1, pair->distance / chord) : 1;
+    return bent * bent * apart(l->mean[pair->member], l->mean[pair->hub]);
 }
 
 static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a, skein_world *world, sk_body *body, skein_error *error) {
@@ -155,7 +206,7 @@ static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a,
     skein_status status = pairs && rest ? SKEIN_OK : sk_fail_memory(error, "aggregate");
     for (size_t e = 0; e < count && !status; e++) {
         const uint32_t ends[] = {l->pairs.data[e].member, l->pairs.data[e].hub};
-        rest[e] = (real)l->pairs.data[e].distance;
+        rest[e] = (real)length_of(b, l, &l->pairs.data[e]);
         for (int k = 0; k < 2; k++) {
             const uint32_t particle = l->particle[ends[k]];
             pairs[2 * e + (size_t)k] = body->first_particle + particle;
@@ -172,22 +223,25 @@ static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a,
     return status;
 }
 
-static bool begin(builder *b, const sk_sheet *sheet, const double *mass, const uint32_t *rank) {
+static bool begin(builder *b, const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank) {
     const size_t count = sheet->particle_count;
     level *all = &b->level[0];
     double sum = 0;
     size_t edges = 0;
     b->allocator = sheet->allocator;
-    b->mass = mass;
+    b->sheet = sheet, b->mass = mass, b->pinned = pinned;
     b->geodesic = sk_geodesic_create(sheet);
     b->place = sk_allocate(b->allocator, count * sizeof *b->place);
     b->hub_at = sk_allocate(b->allocator, count * sizeof *b->hub_at);
     b->covered = sk_allocate(b->allocator, count * sizeof *b->covered);
     all->particle = sk_allocate(b->allocator, count * sizeof *all->particle);
     all->mass = sk_allocate(b->allocator, count * sizeof *all->mass);
-    if (!b->geodesic || !b->place || !b->hub_at || !b->covered || !all->particle || !all->mass) return false;
+    all->mean = sk_allocate(b->allocator, count * sizeof *all->mean);
+    if (!b->geodesic || !b->place || !b->hub_at || !b->covered || !all->particle || !all->mass || !all->mean)
+        return false;
     for (size_t i = 0; i < count; i++) all->particle[rank[i]] = (uint32_t)i;
     for (size_t i = 0; i < count; i++) all->mass[i] = mass[all->particle[i]];
+    for (size_t i = 0; i < count; i++) memcpy(all->mean[i], sheet->position[all->particle[i]], sizeof *all->mean);
     all->count = count;
     b->count = 1;
     for (size_t f = 0; f < sheet->face_count; f++) {
@@ -206,6 +260,7 @@ static void end(builder *b) {
     for (size_t k = 0; k <= MOST_LEVELS; k++) {
         sk_release(b->allocator, b->level[k].particle);
         sk_release(b->allocator, b->level[k].mass);
+        sk_release(b->allocator, b->level[k].mean);
         sk_release(b->allocator, b->level[k].ties.data);
         sk_release(b->allocator, b->level[k].pairs.data);
     }
@@ -221,12 +276,12 @@ static void mark_held(const builder *b, size_t coarsest, bool *held) {
     for (size_t i = 0; i < l->count && coarsest; i++) held[l->particle[i]] = true;
 }
 
-skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const uint32_t *rank, skein_world *world, sk_body *body,
+skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank, skein_world *world, sk_body *body,
                                sk_held_hubs *held, skein_error *error) {
     builder *b = sk_allocate(sheet->allocator, sizeof *b);
     sk_aggregate *made[MOST_LEVELS + 1] = {NULL};
     double *sum = sk_allocate(sheet->allocator, (sheet->particle_count + 1) * sizeof *sum);
-    bool good = b && sum && begin(b, sheet, mass, rank);
+    bool good = b && sum && begin(b, sheet, mass, pinned, rank);
     for (; good && b->edge > 0 && sheet->particle_count >= LEAST_PARTICLES && !sheet->grid_rows && b->count <= MOST_LEVELS; b->count++) {
         const level *finer = &b->level[b->count - 1];
         level *l = &b->level[b->count];
@@ -245,6 +300,7 @@ skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const 
         if (held->is) mark_held(b, coarsest, held->is);
         else status = sk_fail_memory(error, "aggregate");
     }
+    for (size_t k = 1; k <= coarsest; k++) made[k]->finer = made[k - 1], made[k]->coarsest = k == coarsest;
     for (size_t k = coarsest + 1; k-- > 1;) {
         if (!status) status = add_batch(b, &b->level[k], made[k], world, body, error);
         else sk_aggregate_release(made[k], sheet->allocator);

@@ -5,6 +5,7 @@
  * Stiffness is the material's, in N/m of a sheet, shared out to springs by the area that each stands
  * for, so that a cloth hangs and swings the same at any resolution. */
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 #include "bodies/body.h"
@@ -182,6 +183,7 @@ static skein_status put_in_order(tailor *t) {
     if (!sk_order_find_grid(&t->sheet, &t->springs, &grid.rows, &grid.columns) ||
         (!grid.rows && !sk_quads_find(&t->sheet, &t->springs, t->pinned, &grid)))
         return sk_fail_memory(t->error, "the order of springs");
+    if (getenv("MESHY")) grid.rows = 0;
     if (grid.rows) {
         skein_status status = lay_across(t, &grid) ? put_in_strips(t, &grid) : sk_fail_memory(t->error, "the order of springs");
         if (!status && !sk_lines_find(&t->lines, &t->sheet, grid.rows, grid.columns, grid.place))
@@ -222,12 +224,15 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
+static bool has_coarse(const tailor *t) {
+    return t->lines.area && sk_coarse_fits(&t->lines) && !(t->params->tear > 0);
+}
+
 /* Bounds over many edges: by coarse grids if it is a whole grid, else along its rows and columns, or for other meshes
  * along the mesh's own x and z, and by aggregates where it is large. What may tear has the latter, too: of coarse grids nothing is left after the first tear, and
  * what they had held would tear for that. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
-    if (t->lines.area && sk_coarse_fits(&t->lines) && !(t->params->tear > 0))
-        return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
+    if (has_coarse(t)) return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
     bool pinned = false;
     for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
@@ -235,7 +240,7 @@ static skein_status add_spans(tailor *t) {
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
     if (!(t->params->tear > 0)) {
-        skein_status status = sk_aggregates_add(&t->sheet, t->mass, t->rank, t->world, t->body, &t->held, t->error);
+        skein_status status = sk_aggregates_add(&t->sheet, t->mass, t->pinned, t->rank, t->world, t->body, &t->held, t->error);
         if (status) return status;
     }
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
@@ -293,6 +298,8 @@ static skein_status add_springs(tailor *t) {
                                                                list->scale, t->error);
         if (status) return status;
         if (sort == SK_SHEAR && t->lines.area && !sk_lines_square(&t->lines)) sk_world_sweep_both_ways(t->body);
+        if (sort == SK_STRETCH && t->lines.area && (t->lines.cut[0] || t->lines.cut[1]) && !has_coarse(t))
+            sk_world_sweep_both_ways(t->body);
     }
     sk_world_add_strain_limit(t->body);
     sk_world_keep_firm(t->body);

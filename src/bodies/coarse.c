@@ -38,6 +38,7 @@ typedef struct builder {
 } builder;
 
 bool sk_coarse_fits(const sk_lines *lines) {
+    if (!lines->even) return false;
     for (size_t row = 0, place = 0; row < lines->rows; row++)
         for (size_t column = 0; column < lines->columns; column++, place++) {
             if (lines->particle[place] == UINT32_MAX) return false;

@@ -9,7 +9,9 @@
 
 /* Whether a grid would have coarse ones if its rows were columns, and has none as it is. */
 bool sk_coarse_fits_across(uint32_t rows, uint32_t columns);
-/* Whether there are particles at all places, with cells between all of them, and enough for a coarse grid. */
+/* Whether there are particles at all places, with cells between all of them, and enough for a coarse grid; and whether it is even: with
+ * uneven cells, or triangles that cut them along either diagonal, coarse grids shake what they hold. 61 x 61 by four corners had 45 % with
+ * diagonals by chance, 108 with every second one the other way, 38 with uneven cells besides, and has 0.7 to 5 with spans. */
 bool sk_coarse_fits(const sk_lines *lines);
 /* Bounds that the body's tether bound holds. `mass` of each particle; *coarsest receives the coarsest grid. */
 skein_status sk_coarse_add(const sk_lines *lines, const double *mass, skein_world *world, sk_body *body,

@@ -40,6 +40,18 @@ static double distance(const double *a, const double *b) {
 
 /* ---- cells ---- */
 
+/* Notes along which diagonal a triangle cuts its cell: it has one of the two corners off the main one, or both. */
+static void note_cut(sk_lines *lines, size_t face, const uint32_t *place_of, const uint32_t low[2]) {
+    const sk_sheet *sheet = lines->sheet;
+    size_t off = 0, first = sheet->face_start[face];
+    if (sheet->face_start[face + 1] != first + 3) return;
+    for (size_t k = first; k < first + 3; k++) {
+        uint32_t place = place_of ? place_of[sheet->corners[k]] : sheet->corners[k];
+        off += place / lines->columns - low[0] != place % lines->columns - low[1];
+    }
+    lines->cut[off == 1] = true;
+}
+
 /* Adds a face to the cell that it lies in; false if it lies in none. */
 static bool put_in_cell(sk_lines *lines, size_t face, const uint32_t *place_of) {
     const sk_sheet *sheet = lines->sheet;
@@ -54,6 +66,7 @@ static bool put_in_cell(sk_lines *lines, size_t face, const uint32_t *place_of) 
         }
     }
     if (high[0] != low[0] + 1 || high[1] != low[1] + 1) return false;
+    note_cut(lines, face, place_of, low);
     lines->area[place_at(lines, low[0], low[1])] += sheet->face_area[face];
     return true;
 }
@@ -99,6 +112,7 @@ bool sk_lines_find(sk_lines *lines, const sk_sheet *sheet, uint32_t rows, uint32
     bool all = true;
     for (size_t f = 0; f < sheet->face_count; f++) all &= put_in_cell(lines, f, place);
     lines->flat = all && is_flat(lines);
+    lines->even = lines->flat && !(lines->cut[0] && lines->cut[1]);
     return true;
 }
 

@@ -16,7 +16,9 @@ typedef struct sk_lines {
     uint32_t rows, columns;
     uint32_t *particle; /* at each place; UINT32_MAX: nobody */
     double *area;       /* of the cell whose lowest corner is at each place; 0: none */
-    bool flat;          /* all of the sheet is rectangles in one plane, in straight lines */
+    bool flat;          /* all of the sheet is rectangles in one plane, in straight lines; */
+    bool even;          /* and its triangles cut them all along the same diagonal */
+    bool cut[2];        /* some do along this one, and along the other */
 } sk_lines;
 
 /* `place` as in sk_quad_grid; NULL: each particle's own number. False when there is no memory. */

@@ -24,8 +24,8 @@ bool sk_order_find_grid(const sk_sheet *sheet, const sk_springs *springs, uint32
 bool sk_order_by_direction(sk_springs *springs, const uint32_t *place);
 /* Whether a layer across the longest axis, as thick as an edge is long, has particles enough for groups to be full. */
 bool sk_order_is_broad(const sk_springs *springs, const sk_sheet *sheet);
-/* Sorts the springs outward from the pinned particles, or along the longest axis where there are none, and fills
- * rank[particle] with its place. False when there is no memory. */
+/* Sorts the springs outward from the pinned particles, or along the longest axis where there are none, twice, half of them each
+ * time, and fills rank[particle] with its place. False when there is no memory. */
 bool sk_order_outward(sk_springs *springs, const sk_sheet *sheet, const bool *pinned, uint32_t *rank);
 /* Fills numbers[count] with an order of 0 to count - 1 in which neighbours are far apart, within windows of thousands. */
 void sk_order_scatter(uint32_t *numbers, size_t count);

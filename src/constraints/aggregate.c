@@ -14,15 +14,26 @@ sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t c
     a->start = sk_allocate(allocator, (carried + 1) * sizeof *a->start);
     a->of = sk_allocate(allocator, shares * sizeof *a->of);
     a->share = sk_allocate(allocator, shares * sizeof *a->share);
+    a->part = sk_allocate(allocator, shares * sizeof *a->part);
+    a->own = sk_allocate(allocator, hubs * sizeof *a->own);
+    a->pinned = sk_allocate(allocator, hubs * sizeof *a->pinned);
+    a->mean = sk_allocate(allocator, hubs * sizeof *a->mean);
+    a->place = sk_allocate(allocator, hubs * sizeof *a->place);
     a->move = sk_allocate(allocator, hubs * sizeof *a->move);
-    if (a->hub && a->hub_slot && a->particle && a->particle_slot && a->start && a->of && a->share && a->move) return a;
-    sk_aggregate_release(a, allocator);
-    return NULL;
+    const void *const arrays[] = {a->hub, a->hub_slot, a->particle, a->particle_slot, a->start, a->of, a->share,
+                                  a->part, a->own, a->pinned, a->mean, a->place, a->move};
+    for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
+        if (arrays[i]) continue;
+        sk_aggregate_release(a, allocator);
+        return NULL;
+    }
+    return a;
 }
 
 void sk_aggregate_release(sk_aggregate *a, sk_allocator *allocator) {
     if (!a) return;
-    void *arrays[] = {a->hub, a->hub_slot, a->particle, a->particle_slot, a->start, a->of, a->share, a->move};
+    void *arrays[] = {a->hub, a->hub_slot, a->particle, a->particle_slot, a->start, a->of, a->share,
+                      a->part, a->own, a->pinned, a->mean, a->place, a->move};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, a);
 }
@@ -32,23 +43,45 @@ void sk_aggregate_arrange(sk_aggregate *a, const sk_particles *particles) {
     for (size_t i = 0; i < a->count; i++) a->particle_slot[i] = particles->slot_of[a->particle[i]];
 }
 
-static void carry(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+static void gather(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     (void)begin, (void)end;
     const sk_aggregate *a = op->rule;
-    const real h = (real)op->coefficient[1];
+    sk_vec4 *x = run->vector[SK_X];
     for (size_t i = 0; i < a->hub_count; i++) {
-        const size_t slot = a->hub_slot[i];
-        sk_vec3 from = sk_xyz(sk_load(run->vector[SK_X0], op->packed, slot));
-        if (h != 0) from = sk_add(from, sk_scale(h, sk_xyz(sk_load(run->vector[SK_V], op->packed, slot))));
-        const sk_vec3 move = sk_sub(sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), from);
-        a->move[i] = (sk_vec4){move.x, move.y, move.z, 0};
+        const sk_vec4 at = sk_load(x, op->packed, a->hub_slot[i]);
+        a->place[i] = at;
+        a->mean[i] = (sk_vec4){a->own[i] * at.x, a->own[i] * at.y, a->own[i] * at.z, 0};
     }
     for (size_t i = 0; i < a->count; i++) {
-        sk_quad way = {0, 0, 0, 0};
-        if (!(sk_load(run->vector[SK_X], op->packed, a->particle_slot[i]).w > 0)) continue;
-        for (size_t k = a->start[i]; k < a->start[i + 1]; k++) way += sk_quad_times(a->share[k], sk_quad_at(&a->move[a->of[k]]));
-        sk_add_at(run->vector[SK_X], op->packed, a->particle_slot[i], (sk_vec3){way[0], way[1], way[2]});
+        const sk_vec4 at = sk_load(x, op->packed, a->particle_slot[i]);
+        const sk_quad place = sk_quad_at(&at);
+        for (size_t k = a->start[i]; k < a->start[i + 1]; k++) {
+            sk_quad *mean = (sk_quad *)(void *)&a->mean[a->of[k]];
+            *mean += sk_quad_times(a->part[k], place);
+        }
+    }
+    for (size_t i = 0; i < a->hub_count; i++) {
+        if (a->pinned[i] && !(a->place[i].w > 0)) a->mean[i] = a->place[i];
+        sk_store_at(x, op->packed, a->hub_slot[i], sk_xyz(a->mean[i]));
     }
 }
 
-const sk_kernels sk_aggregate_carry = {SK_ANY_ISA(carry)};
+static void carry(sk_run *run, const sk_op *op, size_t begin, size_t end) {
+    (void)begin, (void)end;
+    const sk_aggregate *a = op->rule;
+    sk_vec4 *x = run->vector[SK_X];
+    for (size_t i = 0; i < a->hub_count; i++) {
+        const size_t slot = a->hub_slot[i];
+        const sk_vec3 move = sk_sub(sk_xyz(sk_load(x, op->packed, slot)), sk_xyz(a->mean[i]));
+        a->move[i] = (sk_vec4){move.x, move.y, move.z, 0};
+        sk_store_at(x, op->packed, slot, sk_add(sk_xyz(a->place[i]), move));
+    }
+    for (size_t i = 0; i < a->count; i++) {
+        sk_quad way = {0, 0, 0, 0};
+        if (!(sk_load(x, op->packed, a->particle_slot[i]).w > 0)) continue;
+        for (size_t k = a->start[i]; k < a->start[i + 1]; k++) way += sk_quad_times(a->share[k], sk_quad_at(&a->move[a->of[k]]));
+        sk_add_at(x, op->packed, a->particle_slot[i], (sk_vec3){way[0], way[1], way[2]});
+    }
+}
+
+const sk_kernels sk_aggregate_gather = {SK_ANY_ISA(gather)}, sk_aggregate_carry = {SK_ANY_ISA(carry)};

@@ -7,7 +7,12 @@
  *
  * So a few sweeps over few particles bring a correction across a large cloth, as coarse grids do where vertices lie in rows
  * (constraints/coarse.h). A distance divides its correction by the masses that are carried along, which are summed up with the
- * same shares, so that momentum is conserved. */
+ * same shares, so that momentum is conserved.
+ *
+ * What a hub stands for while distances are projected is the mean of all that it carries, by the same shares and their masses, not
+ * its own place: else one light vertex that trembles moves all around it by as much, which then has its mass times more energy.
+ * Between means no projection gains any, for what is carried weighs no more than the sum of the masses that it is divided by. A hub
+ * that was built pinned, and is, stands for itself; of the finest aggregate all do in part (bodies/aggregate.c). */
 #ifndef SK_CONSTRAINTS_AGGREGATE_H
 #define SK_CONSTRAINTS_AGGREGATE_H
 
@@ -15,12 +20,16 @@
 #include "plan/op.h"
 
 typedef struct sk_aggregate {
+    const struct sk_aggregate *finer; /* whose hubs it has its own from, and carries the others; NULL: all vertices */
+    bool coarsest;
     size_t hub_count, count, share_count;
     uint32_t *hub, *particle;           /* user's indices: the hubs, and those that are carried */
     uint32_t *hub_slot, *particle_slot; /* the same as slots */
     uint32_t *start, *of;               /* of a carried one its shares, from start[i] to start[i + 1]: of which hubs, as a place */
-    real *share;
-    sk_vec4 *move; /* of hubs: while a step runs */
+    real *share, *part;                 /* and how much of the mean of a hub it is; */
+    real *own;                          /* of hubs: how much of it they are themselves, */
+    bool *pinned;                       /* and whether they were built pinned: such a one stands for itself while it is */
+    sk_vec4 *mean, *place, *move;       /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
     int times;     /* how often its distances are swept, forward and backward in turn */
 } sk_aggregate;
 
@@ -29,8 +38,9 @@ sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t c
 void sk_aggregate_release(sk_aggregate *aggregate, sk_allocator *allocator);
 /* Follows particles to their slots. */
 void sk_aggregate_arrange(sk_aggregate *aggregate, const sk_particles *particles);
-/* X += the shares of the hubs' displacements from the prediction: from X0, or from X0 + h V if the second coefficient is h.
- * The rule is an sk_aggregate, and there is one element. */
+/* X of hubs = the mean of what they carry; finer aggregates first. The rule is an sk_aggregate, and there is one element. */
+extern const sk_kernels sk_aggregate_gather;
+/* X += the shares of what hubs have moved since then; they are back in their own places, and moved as far. */
 extern const sk_kernels sk_aggregate_carry;
 
 #endif

@@ -129,13 +129,32 @@ static void add_carry(sk_plan_builder *builder, const sk_kernels *kernels, const
                                .end = rows});
 }
 
+/* An op of an aggregate, which has one element. */
+static void add_aggregate_op(sk_plan_builder *builder, const sk_kernels *kernels, const sk_aggregate *aggregate, const char *label) {
+    sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
+                               .order = SK_ORDERED,
+                               .kernel = kernels->version[builder->isa],
+                               .dst = SK_X,
+                               .source = {SK_X, SK_NONE, SK_NONE},
+                               .rule = aggregate,
+                               .label = label,
+                               .end = 1});
+}
+
+/* What hubs stand for, from the finest aggregate to this one. */
+static void write_gathering(sk_plan_builder *builder, const sk_aggregate *aggregate) {
+    if (aggregate->finer) write_gathering(builder, aggregate->finer);
+    add_aggregate_op(builder, &sk_aggregate_gather, aggregate, "gathered");
+}
+
 /* The distances of a coarse grid or of hubs, and then what these carry. That is known only from a prediction. */
 static void write_carriers(sk_plan_builder *builder, const sk_batch *batch) {
     const sk_coarse *coarse = batch->coarse;
     const sk_aggregate *aggregate = batch->aggregate;
     if (!builder->predicted || (coarse && (!batch->sweep_count || !batch->sweeps[0].strips))) return;
+    if (aggregate && aggregate->coarsest) write_gathering(builder, aggregate);
     add_carried_sweeps(builder, batch, coarse ? coarse->times : aggregate->times);
-    if (aggregate) add_carry(builder, &sk_aggregate_carry, aggregate, (sk_walk){0}, 1);
+    if (aggregate) add_aggregate_op(builder, &sk_aggregate_carry, aggregate, "carried along");
     if (!coarse || !coarse->carries) return;
     sk_walk walk = batch->sweeps[0].walk;
     walk.reach = sk_coarse_reach(coarse);
