@@ -8,6 +8,7 @@
 #      and neither names a kind of op but repeat: what is so of a kind says its row in src/plan/op_types.c
 #   4  each public header compiles alone, as C17 and as C++17
 #   5  each file of C and GLSL opens with a comment: what it owns
+#   6  src/ asks the environment for nothing but SKEIN_...: a switch that was tried with stays in no library
 # Prints each fault as FILE:LINE: words, and fails if there is one.
 set -u
 cd "$1" || exit 2
@@ -234,6 +235,10 @@ find $(ls -d src include io render viewer app film bench solvers bindings exampl
             if ($1 !~ /^(\/\*|\/\/)/) print FILENAME ":1: does not open with a comment: what it owns"
             nextfile
         }' >>"$faults"
+
+# ---- 6: switches ----
+grep -n 'getenv *(' $files | grep -v 'getenv("SKEIN_[A-Z]*")' |
+    sed 's/^\([^:]*:[0-9]*\):.*/\1: asks the environment for something else than SKEIN_.../' >>"$faults"
 
 cat "$faults"
 echo "house: $(echo "$files" | wc -l) files, $(echo "$kinds" | wc -l) kinds, $(grep -c '^[^ ]' "$faults") faults"

@@ -62,6 +62,10 @@ typedef struct builder {
     bool no_memory;
 } builder;
 
+static double apart(const double *a, const double *b) {
+    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
+}
+
 static void see(void *user, uint32_t particle, double distance) {
     builder *b = user;
     level *l = b->now;
@@ -103,28 +107,39 @@ static double share_of(const builder *b, const tie *t) {
     return 1 - t->distance / (reach * b->spacing);
 }
 
-/* How much of what a hub of the level in the making stands for is its own place. */
-static double itself(const builder *b) {
-    return b->count == 1 ? finest_itself : 0;
+/* How much of what hub i of the level in the making stands for is its own place, and how much a member's place by a tie; and whether it
+ * was built pinned, or carries nothing, and stands for itself. */
+static double own_part(const builder *b, const level *finer, const level *l, size_t i) {
+    const double itself = b->count == 1 ? finest_itself : 0, mass = finer->mass[b->place[l->particle[i]]];
+    return l->mass[i] > 0 ? itself + (1 - itself) * mass / l->mass[i] : 1;
+}
+
+static double part_of(const builder *b, const level *finer, const level *l, const double *sum, const tie *t) {
+    const double itself = b->count == 1 ? finest_itself : 0, mass = finer->mass[t->member];
+    return l->mass[t->hub] > 0 ? (1 - itself) * share_of(b, t) / sum[t->member] * mass / l->mass[t->hub] : 0;
+}
+
+static bool is_alone(const builder *b, const level *l, size_t i) {
+    return b->pinned[l->particle[i]] || !(l->mass[i] > 0);
+}
+
+static bool is_hub(const builder *b, const level *finer, size_t member) {
+    return b->hub_at[finer->particle[member]] != UINT32_MAX;
 }
 
 static void add_times(double to[3], double factor, const double *place) {
     for (int c = 0; c < 3; c++) to[c] += factor * place[c];
 }
 
-/* Where what hubs stand for was built: pinned ones stand for themselves. */
+/* Where what hubs stand for was built. */
 static void find_means(const builder *b, const level *finer, level *l, const double *sum) {
     memset(l->mean, 0, l->count * sizeof *l->mean);
-    for (size_t i = 0; i < l->count; i++) {
-        const uint32_t particle = l->particle[i], at = b->place[particle];
-        const bool alone = b->pinned[particle] || !(l->mass[i] > 0);
-        add_times(l->mean[i], alone ? 1 : itself(b) + (1 - itself(b)) * finer->mass[at] / l->mass[i], finer->mean[at]);
-    }
+    for (size_t i = 0; i < l->count; i++)
+        add_times(l->mean[i], is_alone(b, l, i) ? 1 : own_part(b, finer, l, i), finer->mean[b->place[l->particle[i]]]);
     for (size_t i = 0; i < l->ties.count; i++) {
         const tie *t = &l->ties.data[i];
-        if (b->hub_at[finer->particle[t->member]] != UINT32_MAX) continue;
-        if (b->pinned[l->particle[t->hub]] || !(l->mass[t->hub] > 0)) continue;
-        add_times(l->mean[t->hub], (1 - itself(b)) * share_of(b, t) / sum[t->member] * finer->mass[t->member] / l->mass[t->hub], finer->mean[t->member]);
+        if (is_hub(b, finer, t->member) || is_alone(b, l, t->hub)) continue;
+        add_times(l->mean[t->hub], part_of(b, finer, l, sum, t), finer->mean[t->member]);
     }
 }
 
@@ -138,7 +153,7 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
     for (size_t i = 0; i < l->count; i++) l->mass[i] = finer->mass[b->place[l->particle[i]]];
     for (size_t i = 0; i < l->ties.count; i++) {
         const tie *t = &l->ties.data[i];
-        if (b->hub_at[finer->particle[t->member]] != UINT32_MAX) continue; // it goes its own way
+        if (is_hub(b, finer, t->member)) continue; // it goes its own way
         l->mass[t->hub] += share_of(b, t) / sum[t->member] * finer->mass[t->member];
     }
     find_means(b, finer, l, sum);
@@ -148,7 +163,7 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
 /* What is carried, in the order of members. */
 static sk_aggregate *carried_by(const builder *b, const level *finer, const level *l, const double *sum, uint32_t first) {
     size_t carried = finer->count - l->count, shares = 0, next = 0;
-    for (size_t i = 0; i < l->ties.count; i++) shares += b->hub_at[finer->particle[l->ties.data[i].member]] == UINT32_MAX;
+    for (size_t i = 0; i < l->ties.count; i++) shares += !is_hub(b, finer, l->ties.data[i].member);
     sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, shares);
     uint32_t *row = sk_allocate(b->allocator, (finer->count + 1) * sizeof *row);
     if (!a || !row) {
@@ -158,14 +173,13 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
     }
     a->times = SWEEPS;
     for (size_t i = 0; i < l->count; i++) {
-        const uint32_t particle = l->particle[i];
-        a->hub[i] = first + particle;
-        a->pinned[i] = b->pinned[particle] || !(l->mass[i] > 0);
-        a->own[i] = l->mass[i] > 0 ? (real)(itself(b) + (1 - itself(b)) * finer->mass[b->place[particle]] / l->mass[i]) : 1;
+        a->hub[i] = first + l->particle[i];
+        a->pinned[i] = is_alone(b, l, i);
+        a->own[i] = (real)own_part(b, finer, l, i);
     }
     for (size_t i = 0; i < finer->count; i++) {
         row[i] = UINT32_MAX;
-        if (b->hub_at[finer->particle[i]] != UINT32_MAX) continue;
+        if (is_hub(b, finer, i)) continue;
         a->particle[next] = first + finer->particle[i];
         row[i] = (uint32_t)next++;
     }
@@ -178,16 +192,12 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
         const uint32_t at = --a->start[row[t->member] + 1];
         a->of[at] = t->hub;
         a->share[at] = (real)(share_of(b, t) / sum[t->member]);
-        a->part[at] = l->mass[t->hub] > 0 ? (real)((1 - itself(b)) * share_of(b, t) / sum[t->member] * finer->mass[t->member] / l->mass[t->hub]) : 0;
+        a->part[at] = (real)part_of(b, finer, l, sum, t);
     }
     for (size_t i = 0; i < carried; i++) a->start[i] = a->start[i + 1];
     a->start[carried] = (uint32_t)shares;
     sk_release(b->allocator, row);
     return a;
-}
-
-static double apart(const double *a, const double *b) {
-    return hypot(hypot(a[0] - b[0], a[1] - b[1]), a[2] - b[2]);
 }
 
 /* How far apart what two hubs stand for may be: as far as it was built; but where a sheet is bent, as far as when it is
@@ -248,8 +258,7 @@ static bool begin(builder *b, const sk_sheet *sheet, const double *mass, const b
         const uint32_t *c = sheet->corners + sheet->face_start[f];
         const size_t size = sheet->face_start[f + 1] - sheet->face_start[f];
         for (size_t k = 0; k < size; k++, edges++) {
-            const double *p = sheet->position[c[k]], *q = sheet->position[c[(k + 1) % size]];
-            sum += hypot(hypot(p[0] - q[0], p[1] - q[1]), p[2] - q[2]);
+            sum += apart(sheet->position[c[k]], sheet->position[c[(k + 1) % size]]);
         }
     }
     b->edge = edges ? sum / (double)edges : 0;

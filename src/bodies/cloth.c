@@ -5,7 +5,6 @@
  * Stiffness is the material's, in N/m of a sheet, shared out to springs by the area that each stands
  * for, so that a cloth hangs and swings the same at any resolution. */
 #include <math.h>
-#include <stdlib.h>
 #include <string.h>
 
 #include "bodies/body.h"
@@ -183,7 +182,6 @@ static skein_status put_in_order(tailor *t) {
     if (!sk_order_find_grid(&t->sheet, &t->springs, &grid.rows, &grid.columns) ||
         (!grid.rows && !sk_quads_find(&t->sheet, &t->springs, t->pinned, &grid)))
         return sk_fail_memory(t->error, "the order of springs");
-    if (getenv("MESHY")) grid.rows = 0;
     if (grid.rows) {
         skein_status status = lay_across(t, &grid) ? put_in_strips(t, &grid) : sk_fail_memory(t->error, "the order of springs");
         if (!status && !sk_lines_find(&t->lines, &t->sheet, grid.rows, grid.columns, grid.place))
@@ -224,13 +222,14 @@ static skein_status add_bending(tailor *t) {
     return status;
 }
 
+/* Whether it has coarse grids. Of what may tear nothing is left of them after the first tear, and what they had held would tear for that. */
 static bool has_coarse(const tailor *t) {
     return t->lines.area && sk_coarse_fits(&t->lines) && !(t->params->tear > 0);
 }
 
-/* Bounds over many edges: by coarse grids if it is a whole grid, else along its rows and columns, or for other meshes
- * along the mesh's own x and z, and by aggregates where it is large. What may tear has the latter, too: of coarse grids nothing is left after the first tear, and
- * what they had held would tear for that. A mesh without pins gets none: it may be a balloon, which must be able to grow. */
+/* Bounds over many edges: by coarse grids if it is a whole and even grid, else along its rows and columns, or for other meshes
+ * along the mesh's own x and z, and by aggregates where it is large and may not tear. A mesh without pins gets none: it may be a
+ * balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
     if (has_coarse(t)) return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);

@@ -6,9 +6,9 @@
 #include <skein/inside/group_walk.h>
 
 /* A walk that serves two modes. Where bytes are dear (SK_SMALL: a page waits for them) it is there once and is told the
- * mode, which costs up to an eighth of its time; elsewhere the mode is a constant where it is inlined. So it is there of
- * projections of pairs that keep their multipliers, which are short, and most elements are; but not of those that only
- * pull, which few cloths have. */
+ * mode, which costs up to an eighth of its time; elsewhere the mode is a constant where it is inlined. So it is
+ * for projections of pairs that keep their multipliers everywhere: they are short, and most elements are pairs; but not for those
+ * that only pull, which few cloths have. */
 #ifdef SK_SMALL
 #define SK_TOLD static __attribute__((noinline))
 #else
@@ -216,7 +216,7 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
 
 /* Adds the forces of a span in strip row r to those of its particles that lie in the requested rows (`gets`). */
 SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
-                        size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
+                         size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
     offsets o = offsets_of(sweep, span, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
