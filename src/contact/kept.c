@@ -110,24 +110,38 @@ static bool merge_runs(const sk_pair_place *from, sk_pair_place *to, size_t coun
     return more;
 }
 
+static bool reserve_order(sk_touch *touch, sk_allocator *allocator, size_t most) {
+    return SK_RESERVE(allocator, &touch->order, most + 1) && SK_RESERVE(allocator, &touch->other_order, most + 1);
+}
+
+/* Puts places in order, in one of both arrays. */
+static const sk_pair_place *in_order(sk_pair_place *place, sk_pair_place *other, size_t count) {
+    for (bool more = end_of_run(place, 0, count) < count; more;) {
+        more = merge_runs(place, other, count);
+        sk_pair_place *swapped = place;
+        place = other, other = swapped;
+    }
+    return place;
+}
+
 /* Lists late pairs that are near, in order. */
 static const sk_pair_place *list_late(sk_touch *touch, sk_allocator *allocator, const sk_pairs *late, size_t *count) {
-    if (!SK_RESERVE(allocator, &touch->order, late->count + 1) ||
-        !SK_RESERVE(allocator, &touch->other_order, late->count + 1))
-        return NULL;
-    sk_pair_place *place = touch->order.data, *other = touch->other_order.data;
+    if (!reserve_order(touch, allocator, late->count)) return NULL;
+    sk_pair_place *place = touch->order.data;
     *count = 0;
     for (size_t b = 0; b < late->count; b += 8)
         for (uint64_t bits = sk_pairs_that(late, b, SK_IS_NEAR); bits; bits &= bits - 1) {
             size_t k = b + sk_first_of(bits);
             place[(*count)++] = (sk_pair_place){late->key[k], (uint32_t)k};
         }
-    for (bool more = end_of_run(place, 0, *count) < *count; more;) {
-        more = merge_runs(place, other, *count);
-        sk_pair_place *swapped = place;
-        place = other, other = swapped;
-    }
-    return place;
+    return in_order(place, touch->other_order.data, *count);
+}
+
+const sk_pair_place *sk_touch_order_divided(sk_touch *touch, sk_allocator *allocator, int sort) {
+    const sk_divided_list *list = &touch->divided[sort];
+    if (!reserve_order(touch, allocator, list->count)) return NULL;
+    for (size_t i = 0; i < list->count; i++) touch->order.data[i] = (sk_pair_place){list->data[i].key, (uint32_t)i};
+    return in_order(touch->order.data, touch->other_order.data, list->count);
 }
 
 /* Of kept pairs some blocks of eight, and of late ones, in order, those that belong between them: where they are listed. */

@@ -20,7 +20,8 @@ typedef struct sk_pairs {
     size_t count, capacity;
 } sk_pairs;
 
-enum { SK_IS_DIVIDED = 1, SK_IS_FORCED = 2 }; /* `settled` */
+/* `settled`: those before SK_IS_DIVIDED are looked at again. */
+enum { SK_GOES_ALONG = 1, SK_GOES_ALONG_AGAIN, SK_IS_DIVIDED, SK_IS_FORCED };
 
 /* Nearest points of all pairs, from the places x of their corners; and which are near: `closes`. */
 typedef void sk_closest_kernel(const sk_vec4 *x, sk_pairs *pairs);
@@ -65,6 +66,16 @@ typedef struct sk_yielding_list {
     sk_yielding *data;
     size_t count, capacity;
 } sk_yielding_list;
+/* One that planes divide: it stays known when it is let go. */
+typedef struct sk_divided {
+    uint64_t key;
+    uint32_t corner[4];
+    sk_vec3 normal;
+} sk_divided;
+typedef struct sk_divided_list {
+    sk_divided *data;
+    size_t count, capacity;
+} sk_divided_list;
 typedef struct sk_closing_list {
     sk_closing_pair *data;
     size_t count, capacity;

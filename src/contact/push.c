@@ -80,6 +80,7 @@ void sk_touch_push_on(sk_run *run, const sk_op *op, size_t from, size_t end) {
 void sk_touch_push(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = ((const sk_force *)op->rule)->state;
     if (!touch) return;
+    touch->implicit = false;
     touch->corrects = op->source[1] == SK_NONE; // velocities are made of positions afterwards
     sk_touch_push_on(run, op, from, end);
     sk_touch_lead(run, op, from, end);

@@ -15,7 +15,8 @@
  * saved and loaded goes on as it would have. What has gone through each other all the same is led apart (tangle.h).
  *
  * The bound is a division of space by planes for each pair (planar division: arXiv 2604.15513), where it is needed: a
- * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. */
+ * vertex goes the least share of its way that any of its pairs allows, and a minimum knows no order. Velocities of who goes less
+ * than he would are shared with what holds him (impact.c). */
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
 
@@ -85,6 +86,7 @@ typedef struct sk_touch {
     bool alone;      /* no other rule meets */
     bool found;      /* whether the pairs are of this skin */
     bool followed;   /* the last bound has seen where all went */
+    bool implicit;   /* an implicit solve presses, and takes who is held back as he is */
     bool corrects;   /* the method corrects positions: edges are held taut (taut.c) */
     bool remembers;  /* all have been seen */
     bool held;       /* a vertex is pinned */
@@ -132,8 +134,7 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
-    uint32_t *held_with; /* the first of those who hold each other back; */
-    uint8_t *pinned;     /* of such a first one 1: somebody among them is; and of pieces of the skin 2 */
+    uint8_t *pinned;     /* of pieces of the skin: somebody is */
     uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
     uint8_t *waits;    /* and whether it is one of them */
     uint8_t *lost;    /* it is looked for */
@@ -171,13 +172,14 @@ typedef struct sk_touch {
     size_t told_apart[SK_PAIR_SORTS]; /* late pairs of which it is known whether they may close */
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
+    sk_divided_list divided[SK_PAIR_SORTS]; /* in this substep */
     sk_yielding_list yielding;
     sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
     sk_presses press;
     struct {
         sk_pair_place *data;
         size_t count, capacity;
-    } order, other_order;         /* of late pairs that are near */
+    } order, other_order;         /* of late pairs that are near, or of those that are divided */
     uint64_t searches, given_up; /* how often it searched, and gave up: */
     uint64_t told;               /* of these the world knows; */
     bool asked_crowded, told_crowded; /* whether a body of this skin is too thick for its edges; and of one */
@@ -240,6 +242,8 @@ bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all,
 void sk_touch_leave_out(sk_touch *touch);
 /* Lists those that are near, in the order of leaves. */
 bool sk_touch_find_near(sk_touch *touch, sk_allocator *allocator, int sort);
+/* Those that a bound has divided, in order; until the next list. NULL when there is no memory. */
+const sk_pair_place *sk_touch_order_divided(sk_touch *touch, sk_allocator *allocator, int sort);
 /* The pairs that an entry of a list is about, and where it is there. */
 static inline const sk_pairs *sk_pairs_of(const sk_touch *touch, int sort, uint32_t entry) {
     return entry & 1 ? &touch->late[sort] : &touch->kept[sort];
@@ -285,6 +289,11 @@ sk_op_kernel sk_touch_hold;
 bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all);
 /* Looks for those that are lost, on their ways: they are wild from now on. */
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
+
+/* ---- impact.c ---- */
+
+/* Shares velocities of who is held back with what holds him. False when there is no memory. */
+bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const sk_run *run, const sk_op *op);
 
 /* ---- make/crowded.c ---- */
 

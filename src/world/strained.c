@@ -4,11 +4,7 @@
  *
  * A sheet's edges that nothing limits are firm all the same, if they are stiff: a substep would undo a stretch of a twentieth at once, did not
  * what hangs from them pull on them again. So sheets lie over the corners of boxes, where a few vertices bear all. What is soft stretches as
- * it is meant to. Where surfaces meet, and there are pins, who has some is not swept, nor who is fast: wound up or hit by what gives way
- * nowhere, sheets have to give way. (A sheet that was led up under another at 4 m/s went through it, and what was wound by four turns and back
- * in two substeps kept a tenth of stretch.) */
-#include <math.h>
-
+ * it is meant to. */
 #include "world/world.h"
 
 enum { SOME = 256 };
@@ -42,39 +38,8 @@ static bool is_strained(const sk_batch *batch, sk_isa isa, const sk_vec4 *x, boo
     return false;
 }
 
-/* How thin rules that meet are, m; none do where it is not finite. */
-static double least_thickness(const skein_world *world) {
-    double least = INFINITY;
-    for (size_t i = 0; i < world->objects.count; i++) {
-        const sk_object *object = world->objects.data[i];
-        if (object->category != SKEIN_FORCE || !object->common.plain.enabled || !object->as.force->type->meeting) continue;
-        least = fmin(least, sk_object_number(object, "thickness"));
-    }
-    return least;
-}
-
-static bool has_pins(const skein_world *world) {
-    bool any = false;
-    for (size_t i = 0; i < world->particles.count && !any; i++) any = world->particles.pinned[i];
-    return any;
-}
-
-/* Whether a batch has no pins, and nobody of it goes farther than `way` in h. */
-static bool gives_way_slowly(const skein_world *world, const sk_batch *batch, double way, double h) {
-    const sk_vec4 *x = world->particles.vector[SK_X], *v = world->particles.vector[SK_V];
-    const real most = (real)(way * way / (h * h));
-    bool slowly = true;
-    for (size_t i = 0; i < batch->count * batch->arity && slowly; i++) {
-        const uint32_t slot = batch->slot[i];
-        slowly = x[slot].w > 0 && sk_dot(sk_xyz(v[slot]), sk_xyz(v[slot])) <= most;
-    }
-    return slowly;
-}
-
 void sk_world_note_strained(skein_world *world, double dt) {
     const double h = dt / (double)world->method->substeps(world->method_params);
-    const double thickness = world->sweeps_more ? least_thickness(world) : INFINITY;
-    const bool by_pins = isfinite(thickness) && has_pins(world);
     world->rules.strained = false;
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         sk_batch *batch = world->rules.batches.data[i];
@@ -82,7 +47,6 @@ void sk_world_note_strained(skein_world *world, double dt) {
         const bool limited = batch->bound && *batch->bound < SK_UNBOUNDED;
         if (!limited && !(world->sweeps_more && sk_batch_is_firm(batch))) continue;
         batch->strained = is_strained(batch, world->isa, world->particles.vector[SK_X], limited, h);
-        if (batch->strained && !limited && by_pins) batch->strained = gives_way_slowly(world, batch, 0.5 * thickness, h);
         world->rules.strained |= batch->strained;
     }
 }
