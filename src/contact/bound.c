@@ -179,7 +179,8 @@ static void note_divided(sk_touch *touch, const sk_pairs *pairs, int sort, size_
     list->data[__atomic_fetch_add(&list->count, 1, __ATOMIC_RELAXED)] =
         (sk_divided){.key = pairs->key[k],
                      .corner = {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]},
-                     .normal = {pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]}};
+                     .normal = {pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]},
+                     .thickness = pairs->thickness[k]};
 }
 
 /* What both features go together along the normal. */

@@ -10,6 +10,10 @@
  * fast as they did. Momentum stays, of both together and about any point of their line; energy is never made, since each pair
  * brings the velocities to the nearest ones that do (in the measure of masses). One after the other, in the order of all pairs, once.
  *
+ * What is less than half a thickness in a substep stays as it is: there is a push in the next one, and it knows friction. Where all was
+ * shared, 20 kg on a loose cloth on a floor crept at up to 9 cm/s, since normals of what all but touches lean anywhere; from a tenth on
+ * silk had some of its velocities, from 0.2 to 1 none, and the load crept at 0 to 1 cm/s, as it does where nothing is shared.
+ *
  * Corners, since planes stop corners: where the nearest points of the features met, a triangle's far corner that would turn
  * through the other feature kept all of its velocity, and silk lay with 23 m/s. */
 #include "contact/touch.h"
@@ -31,6 +35,7 @@ static int farthest(const sk_touch *touch, const uint32_t v[4], int first, int e
 }
 
 static void share_in_pair(const sk_touch *touch, const sk_run *run, const sk_op *op, int sort, const sk_divided *pair) {
+    const real least = (real)0.5; // thicknesses a substep
     const uint32_t *v = pair->corner;
     const sk_vec3 n = pair->normal;
     const int second = sort == SK_EDGES ? 2 : 1;
@@ -42,7 +47,7 @@ static void share_in_pair(const sk_touch *touch, const sk_run *run, const sk_op 
     const sk_vec3 parted = sk_scale((real)(1 / op->dt), sk_sub(gone(touch, upper), gone(touch, lower)));
     const sk_vec3 part = sk_sub(sk_xyz(sk_load(velocity, op->packed, slot[0])), sk_xyz(sk_load(velocity, op->packed, slot[1])));
     const real missing = sk_dot(n, sk_sub(parted, part));
-    if (!(missing > 0)) return;
+    if (!(missing > least * pair->thickness / (real)op->dt)) return;
     const sk_vec3 blow = sk_scale(missing / (gives[0] + gives[1]), n);
     sk_add_at(velocity, op->packed, slot[0], sk_scale(gives[0], blow));
     sk_add_at(velocity, op->packed, slot[1], sk_scale(-gives[1], blow));

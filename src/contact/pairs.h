@@ -71,6 +71,7 @@ typedef struct sk_divided {
     uint64_t key;
     uint32_t corner[4];
     sk_vec3 normal;
+    real thickness;
 } sk_divided;
 typedef struct sk_divided_list {
     sk_divided *data;
