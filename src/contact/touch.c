@@ -380,7 +380,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
     LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
-    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(pinned, vertices), LIST(lost, vertices), LIST(wild, vertices);
+    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);

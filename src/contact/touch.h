@@ -134,7 +134,7 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
-    uint8_t *pinned;     /* of pieces of the skin: somebody is */
+    uint8_t *loses;      /* of pieces of the skin: who of it is held back has lost the velocity */
     uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
     uint8_t *waits;    /* and whether it is one of them */
     uint8_t *lost;    /* it is looked for */
