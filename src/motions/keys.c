@@ -27,7 +27,8 @@ typedef struct keys_params {
 static const skein_field fields[] = {
     SK_TEXT(keys_params, keys, "keys", "0 0 0 0",
             "one after the other: a time (s), by how much they are shifted then along x, y, z (m) and, as one likes, "
-            "turned about x, then y, then z (deg): [[0, 0, 0, 0], [1.5, 0, 0.2, 0, 0, 90, 0]]"),
+            "turned about x, then y, then z (deg): [[0, 0, 0, 0], [1.5, 0, 0.2, 0, 0, 90, 0]]; in programs, as text, "
+            "0 0 0 0, 1.5 0 0.2 0 0 90 0"),
     SK_VEC3(keys_params, centre, "centre", "m", 0, 0, 0, "what they are turned about, before they are shifted"),
     SK_BOOL(keys_params, smooth, "smooth", 1, "true: they slow down towards each key; false: evenly from key to key"),
     SK_BOOL(keys_params, repeat, "repeat", 0, "true: from the last key it goes on with the first, again and again"),
@@ -55,7 +56,7 @@ static skein_status read_table(const char *text, key_table *table, skein_error *
         int count = read_row(at, end, key);
         if (count != SHORT_KEY && count != KEY)
             return sk_fail(error, SKEIN_ERROR_VALUE, "keys",
-                           "key %zu: expected a time and 3 numbers (a shift), or 6 (and a turn), not '%.*s'",
+                           "key %zu: expected a time and 3 numbers (a shift), or 6 (and a turn), as in 0 0 0 0, 1.5 0 0.2 0, not '%.*s'",
                            table->count, (int)(end - at < 60 ? end - at : 60), at);
         if (table->count && !(key[0] > key[-KEY]))
             return sk_fail(error, SKEIN_ERROR_VALUE, "keys", "key %zu: its time, %g s, is not after the one before it",
