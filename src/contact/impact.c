@@ -7,8 +7,8 @@
  *
  * So each pair that planes divide takes from both of its features what they had too much, as what does not bounce: of the upper one the
  * corner that would lie lowest, of the lower one the one that would lie highest, get velocities along the normal with which they close as
- * fast as they did. Momentum stays, of both together and about any point of their line; energy is never made, since each pair
- * brings the velocities to the nearest ones that do (in the measure of masses). One after the other, in the order of all pairs, once.
+ * fast as they did. Momentum stays (angular momentum but for the way between the corners, across the normal); energy is never made, since
+ * each pair brings the velocities to the nearest ones that do, in the measure of masses. One after the other, in the order of all pairs, once.
  *
  * What is less than half a thickness in a substep stays as it is: there is a push in the next one, and it knows friction. Where all was
  * shared, 20 kg on a loose cloth on a floor crept at up to 9 cm/s, since normals of what all but touches lean anywhere; from a tenth on
