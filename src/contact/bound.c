@@ -394,63 +394,17 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
 
 /* ---- the op ---- */
 
-/* What pieces of the skin lose of what they are held back by: nothing; what all lose together who are tangled is given back to all of them; or
- * all of it, since somebody is pinned, or has yielded to a pin. */
-enum { LOSES_NOTHING, SHARES_LOSS, LOSES_ALL };
-
-/* Two solids are led out of each other as they are, and gain nothing by it. */
-static void find_tangled(sk_touch *touch) {
-    const sk_skin *skin = &touch->skin;
-    for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
-        const sk_crossing *crossing = &touch->tangle.crossing.data[i];
-        const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
-        if (!skin->closed[one] || !skin->closed[other]) touch->loses[one] = touch->loses[other] = SHARES_LOSS;
-    }
-}
-
-static void find_losing(sk_touch *touch) {
-    memset(touch->loses, LOSES_NOTHING, touch->skin.vertex_count);
-    if (touch->tangle.any && !touch->implicit) find_tangled(touch);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (!(touch->inverse[v] > 0) || sk_has_yielded(touch, v)) touch->loses[touch->skin.piece[v]] = LOSES_ALL;
-}
-
-/* Gives all who are tangled a share of the momentum that they have lost. */
-static void give_back(sk_touch *touch, const sk_run *run, const sk_op *op, const double lost[3]) {
-    double mass = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-            if (touch->loses[touch->skin.piece[v]] != SHARES_LOSS) continue;
-            if (pass) sk_add_at(run->vector[SK_V], op->packed, touch->slot[v], (sk_vec3){(real)(lost[0] / mass), (real)(lost[1] / mass), (real)(lost[2] / mass)});
-            else mass += 1 / (double)touch->inverse[v];
-        }
-}
-
-/* Who is held back keeps its velocity, shared with what holds it (impact.c). But a surface that is pinned loses it to its pins: wound
- * tightly, it would go through itself. And what is tangled to what it is tangled in: who is led apart pulls on springs again and again. (A cloth
- * in a jelly of 8 kg had 1,800 J after 150 frames, and more each; where it was lost to nobody they drove off, with 500 J after 400.) */
+/* Who is held back is where the bound lets it, and its velocity what impact.c says. */
 static bool store_ways(sk_touch *touch, sk_allocator *allocator, const sk_run *run, const sk_op *op, bool solved) {
-    const sk_vec3 common = touch->common;
-    const real rate = (real)(1 / op->dt);
     bool any = false;
-    for (size_t v = 0; v < touch->skin.vertex_count && !any; v++) any = touch->share[v] < 1;
-    if (!any) return true;
-    find_losing(touch);
-    double lost[3] = {0, 0, 0}; // momentum
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!(touch->share[v] < 1)) continue;
-        const sk_vec3 to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), sk_scale(touch->share[v], sk_xyz(touch->way[v])));
-        const size_t slot = touch->slot[v];
-        sk_store_at(run->vector[SK_X], op->packed, slot, to);
-        const uint8_t loses = touch->loses[touch->skin.piece[v]];
-        if (loses == LOSES_NOTHING) continue;
-        const sk_vec3 change = sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v])));
-        sk_add_at(run->vector[SK_V], op->packed, slot, change);
-        if (loses == LOSES_ALL) continue;
-        const double mass = 1 / (double)touch->inverse[v];
-        lost[0] -= mass * (double)change.x, lost[1] -= mass * (double)change.y, lost[2] -= mass * (double)change.z;
+        any = true;
+        const sk_vec3 from = sk_add(sk_xyz(touch->stand[v]), touch->common);
+        sk_store_at(run->vector[SK_X], op->packed, touch->slot[v], sk_add(from, sk_scale(touch->share[v], sk_xyz(touch->way[v]))));
     }
-    if (lost[0] != 0 || lost[1] != 0 || lost[2] != 0) give_back(touch, run, op, lost);
+    if (!any) return true;
+    sk_touch_lose_velocities(touch, run, op);
     return !solved || sk_touch_share_velocities(touch, allocator, run, op);
 }
 

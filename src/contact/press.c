@@ -82,7 +82,7 @@ void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = touch_of(op);
     if (!touch) return;
-    touch->implicit = true;
+    touch->implicit = true, touch->corrects = false;
     touch->press.pair.count = touch->press.now.count = 0;
     const size_t most = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count;
     if (!most) return;

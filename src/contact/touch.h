@@ -134,7 +134,7 @@ typedef struct sk_touch {
     real *inverse; /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
     uint8_t *lowered; /* its share was, in the last round */
-    uint8_t *loses;      /* of pieces of the skin: who of it is held back has lost the velocity */
+    uint8_t *loses;      /* of pieces of the skin: what who of it is held back loses (impact.c) */
     uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
     uint8_t *waits;    /* and whether it is one of them */
     uint8_t *lost;    /* it is looked for */
@@ -292,7 +292,9 @@ bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
 
 /* ---- impact.c ---- */
 
-/* Shares velocities of who is held back with what holds him. False when there is no memory. */
+/* Takes from who is held back, and X has been stored where he may go, what he loses of velocity. */
+void sk_touch_lose_velocities(sk_touch *touch, const sk_run *run, const sk_op *op);
+/* Then shares what he has with what holds him. False when there is no memory. */
 bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const sk_run *run, const sk_op *op);
 
 /* ---- make/crowded.c ---- */
