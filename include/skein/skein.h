@@ -542,7 +542,8 @@ skein_status skein_positions_blend(const skein_world *world, double blend, size_
 /* Writes positions or velocities, count x 3. Finite numbers only. */
 skein_status skein_positions_set(skein_world *world, size_t first, size_t count, const double *xyz);
 skein_status skein_velocities_set(skein_world *world, size_t first, size_t count, const double *xyz);
-/* Holds a particle where it is, or lets it go with the mass it was built with, and with the velocity that it has. */
+/* Holds a particle where it is, or lets it go with the mass it was built with, and with the velocity that it has. From the next
+ * step on the rest of a cloth or rope is tethered to it. */
 skein_status skein_particle_pin(skein_world *world, size_t particle, bool pinned);
 /* Says where pinned particles are to be at the end of the next step: `particles` are `count` indices (NULL: 0 to count
  * - 1), `xyz` are count x 3, in metres. In the step they go there in straight lines at constant velocities, substep by

@@ -329,13 +329,17 @@ typedef struct tethers {
     real *lengths;         /* count x anchors */
 } tethers;
 
+static bool is_tethered(const tailor *t, size_t i) {
+    return !t->world->particles.pinned[t->body->first_particle + i];
+}
+
 /* Notes the distances of all particles from one set of anchors as column `k` of the tethers. */
 static bool measure_tethers(tailor *t, sk_geodesic *geodesic, const bool *source, size_t k, tethers *all,
                             double *distance, uint32_t *nearest) {
     if (!sk_geodesic_from(geodesic, source, distance, nearest)) return false;
     size_t filled = 0, anchors = all->anchors;
     for (size_t i = 0; i < t->sheet.particle_count; i++) {
-        if (t->pinned[i] || !(t->mass[i] > 0)) continue;
+        if (!is_tethered(t, i)) continue;
         bool reached = distance[i] < INFINITY;
         all->particles[filled * (1 + anchors)] = t->body->first_particle + (uint32_t)i;
         all->particles[filled * (1 + anchors) + 1 + k] = t->body->first_particle + (uint32_t)(reached ? nearest[i] : i);
@@ -402,11 +406,10 @@ static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
 }
 
 /* Each of a few pins tethers every particle; with many (an edge), only the nearest one does. */
-static skein_status add_tethers(tailor *t) {
+static skein_status add_tethers(tailor *t, const bool *to) {
     sk_allocator *allocator = &t->world->allocator;
     size_t count = t->sheet.particle_count, pins = 0, tethered = 0;
-    for (size_t i = 0; i < count; i++) pins += t->pinned[i];
-    for (size_t i = 0; i < count; i++) tethered += !t->pinned[i] && t->mass[i] > 0;
+    for (size_t i = 0; i < count; i++) pins += to[i], tethered += is_tethered(t, i);
     if (!pins || !tethered) return SKEIN_OK;
     size_t anchors = pins <= MOST_SINGLE_ANCHORS ? pins : 1;
 
@@ -417,9 +420,9 @@ static skein_status add_tethers(tailor *t) {
     tethers all;
     bool good = allocate_tethers(t, &all, tethered, anchors) && geodesic && distance && nearest && source;
     if (good && anchors < pins)
-        good = measure_tethers(t, geodesic, t->pinned, 0, &all, distance, nearest);
+        good = measure_tethers(t, geodesic, to, 0, &all, distance, nearest);
     for (size_t i = 0, k = 0; i < count && good && anchors == pins; i++) {
-        if (!t->pinned[i]) continue;
+        if (!to[i]) continue;
         memset(source, 0, count * sizeof *source);
         source[i] = true;
         good = measure_tethers(t, geodesic, source, k++, &all, distance, nearest);
@@ -451,6 +454,37 @@ static void hand_over_surface(tailor *t) {
     body->grid_rows = sheet->grid_rows;
     body->grid_columns = sheet->grid_columns;
     sheet->particle_of_vertex = sheet->face_sizes = sheet->face_vertices = NULL;
+}
+
+/* The sheet as it was built, as far as distances along it need that. */
+static bool lay_out(tailor *t) {
+    const sk_body *body = t->body;
+    sk_sheet *sheet = &t->sheet;
+    sk_allocator *allocator = sheet->allocator = &t->world->allocator;
+    sheet->vertex_count = body->vertex_count;
+    sheet->particle_count = body->particle_count;
+    sheet->face_count = body->face_count;
+    sheet->grid_rows = body->grid_rows;
+    sheet->grid_columns = body->grid_columns;
+    sheet->position = sk_allocate(allocator, body->particle_count * sizeof *sheet->position);
+    sheet->face_start = sk_allocate(allocator, (body->face_count + 1) * sizeof *sheet->face_start);
+    sheet->corners = sk_allocate(allocator, body->face_vertex_count * sizeof *sheet->corners);
+    if (!sheet->position || !sheet->face_start || !sheet->corners) return false;
+    for (size_t i = 0; i < body->particle_count; i++) {
+        const sk_vec3 p = t->world->particles.built[body->first_particle + i];
+        sheet->position[i][0] = (double)p.x, sheet->position[i][1] = (double)p.y, sheet->position[i][2] = (double)p.z;
+    }
+    for (size_t f = 0; f < body->face_count; f++) sheet->face_start[f + 1] = sheet->face_start[f] + body->face_sizes[f];
+    for (size_t c = 0; c < body->face_vertex_count; c++)
+        sheet->corners[c] = body->particle_of_vertex[body->face_vertices[c]] - body->first_particle;
+    return true;
+}
+
+static skein_status tether(skein_world *world, sk_body *body, const void *params, const bool *pins, skein_error *error) {
+    tailor t = {.world = world, .body = body, .params = params, .error = error};
+    skein_status status = lay_out(&t) ? add_tethers(&t, pins) : sk_fail_memory(error, "tethers");
+    sk_sheet_release(&t.sheet);
+    return status;
 }
 
 /* Of bending, what the cloth was built with. */
@@ -498,7 +532,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *params,
     if (!status) status = put_in_order(&t);
     if (!status) status = add_springs(&t);
     if (!status) status = add_triangles(&t);
-    if (!status) status = add_tethers(&t);
+    if (!status) status = add_tethers(&t, t.pinned);
     if (!status) {
         hand_over_surface(&t);
         change(body, params);
@@ -521,6 +555,7 @@ const sk_body_type sk_cloth = {
     .build = build,
     .live = live,
     .change = change,
+    .tether = tether,
     .presets = &sk_fabrics,
     .is_sheet = true,
 };

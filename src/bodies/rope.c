@@ -97,12 +97,20 @@ static void lay_hanging(const sk_block *block, const rope_params *params, double
     memcpy(block->position[block->count - 1], params->to, sizeof params->to);
 }
 
-/* Places the particles; the rope's length comes back. */
-static skein_status lay(const sk_block *block, const rope_params *params, double *length) {
+static double way_of(const rope_params *params) {
     double square = 0;
     for (int k = 0; k < 3; k++) square += (params->to[k] - params->from[k]) * (params->to[k] - params->from[k]);
-    double way = sqrt(square);
-    *length = params->length > 0 ? params->length : way;
+    return sqrt(square);
+}
+
+static double length_of(const rope_params *params) {
+    return params->length > 0 ? params->length : way_of(params);
+}
+
+/* Places the particles; the rope's length comes back. */
+static skein_status lay(const sk_block *block, const rope_params *params, double *length) {
+    double way = way_of(params);
+    *length = length_of(params);
     if (!(*length > 0))
         return sk_fail(block->error, SKEIN_ERROR_VALUE, "to", "a rope needs two ends that are apart, or a length");
     if (*length > way * (1 + 1e-9)) lay_hanging(block, params, *length);
@@ -128,37 +136,41 @@ skein_status sk_rope_choose_words(void *data, const char *words) {
 /* ---- tethers ---- */
 
 /* The nearest pin of each particle, counted along the rope. */
-static void find_nearest(const sk_block *block, uint32_t *nearest) {
-    size_t count = block->count, last = SIZE_MAX;
+static void find_nearest(const bool *pins, size_t count, uint32_t *nearest) {
+    size_t last = SIZE_MAX;
     for (size_t i = 0; i < count; i++) {
-        if (block->pinned[i]) last = i;
+        if (pins[i]) last = i;
         nearest[i] = last == SIZE_MAX ? UINT32_MAX : (uint32_t)last;
     }
     last = SIZE_MAX;
     for (size_t i = count; i-- > 0;) {
-        if (block->pinned[i]) last = i;
+        if (pins[i]) last = i;
         if (last != SIZE_MAX && (nearest[i] == UINT32_MAX || last - i < i - nearest[i])) nearest[i] = (uint32_t)last;
     }
 }
 
 /* Each of a few pins tethers every particle; with many, only the nearest one does. The few are listed first: searching
  * for them for each particle made a rope of 100,000 take seconds. */
-static skein_status add_tethers(const sk_block *block, double link) {
-    sk_allocator *allocator = &block->world->allocator;
-    size_t count = block->count, pins = 0, filled = 0, few[MOST_SINGLE_ANCHORS];
+static skein_status add_tethers(skein_world *world, sk_body *body, const void *data, const bool *to, skein_error *error) {
+    const rope_params *params = data;
+    sk_allocator *allocator = &world->allocator;
+    size_t count = (size_t)params->count, pins = 0, free = 0, filled = 0, few[MOST_SINGLE_ANCHORS];
+    const double link = length_of(params) / (double)(params->count - 1);
+    const bool *pinned = world->particles.pinned + body->first_particle;
     for (size_t i = 0; i < count; i++) {
-        if (block->pinned[i] && pins < MOST_SINGLE_ANCHORS) few[pins] = i;
-        pins += block->pinned[i];
+        if (to[i] && pins < MOST_SINGLE_ANCHORS) few[pins] = i;
+        pins += to[i];
+        free += !pinned[i];
     }
-    if (!pins || pins == count) return SKEIN_OK;
+    if (!pins || !free) return SKEIN_OK;
     size_t anchors = pins <= MOST_SINGLE_ANCHORS ? pins : 1;
-    uint32_t first = block->body->first_particle, *nearest = sk_allocate(allocator, count * sizeof *nearest);
+    uint32_t first = body->first_particle, *nearest = sk_allocate(allocator, count * sizeof *nearest);
     uint32_t *particles = sk_allocate(allocator, count * (1 + anchors) * sizeof *particles);
     real *lengths = sk_allocate(allocator, count * anchors * sizeof *lengths);
-    skein_status status = nearest && particles && lengths ? SKEIN_OK : sk_fail_memory(block->error, "tethers");
-    if (!status) find_nearest(block, nearest);
+    skein_status status = nearest && particles && lengths ? SKEIN_OK : sk_fail_memory(error, "tethers");
+    if (!status) find_nearest(to, count, nearest);
     for (size_t i = 0; i < count && !status; i++) {
-        if (block->pinned[i]) continue;
+        if (pinned[i]) continue;
         uint32_t *element = particles + filled * (1 + anchors);
         element[0] = first + (uint32_t)i;
         for (size_t k = 0; k < anchors; k++) {
@@ -168,8 +180,7 @@ static skein_status add_tethers(const sk_block *block, double link) {
         }
         filled++;
     }
-    if (!status)
-        status = sk_world_add_tethers(block->world, block->body, SK_LIMIT_LAST, filled, anchors, particles, lengths, block->error);
+    if (!status) status = sk_world_add_tethers(world, body, SK_LIMIT_LAST, filled, anchors, particles, lengths, error);
     sk_release(allocator, nearest);
     sk_release(allocator, particles);
     sk_release(allocator, lengths);
@@ -211,7 +222,7 @@ static skein_status build(skein_world *world, sk_body *body, const void *data, c
     if (!status) status = sk_block_add_springs(&block, "stretch", params->stretch, true, &stretch, 1);
     if (!status) {
         sk_world_add_strain_limit(body);
-        status = add_tethers(&block, link);
+        status = add_tethers(world, body, params, block.pinned, error);
     }
     if (!status) status = sk_block_add_strips(&block);
     if (!status) status = sk_block_add_surface(&block);
@@ -226,5 +237,6 @@ const sk_body_type sk_rope = {
     .build = build,
     .live = live,
     .change = change,
+    .tether = add_tethers,
     .shape = SKEIN_SHAPE_CHAIN,
 };

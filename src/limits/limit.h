@@ -38,6 +38,7 @@ typedef struct sk_limit {
     const char *label;
     const bool *enabled;
     bool asleep;         /* all that it is on sleeps */
+    bool late;           /* its anchors were pinned once their body was built, and may be others soon (world/tethers.c) */
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     sk_limit_order order;
     size_t count;

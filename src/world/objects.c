@@ -363,6 +363,10 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
         return status;
     }
     body->particle_count = (uint32_t)(world->particles.count - particles);
+    if (!sk_world_note_built_pins(world, body, type->tether != NULL)) {
+        undo_body(world, object, particles, triangles, batches, limits);
+        return sk_fail_memory(error, "pins");
+    }
     body->first_triangle = triangles;
     body->triangle_count = world->triangles.count - triangles;
     sk_world_reuse_indices(world, body, batches, limits);

@@ -138,7 +138,7 @@ static void remove_rules(skein_world *world, const sk_body *body) {
     rules->batches.count = kept;
     kept = 0;
     for (size_t i = 0; i < rules->limits.count; i++) {
-        if (rules->limits.data[i]->enabled == &body->enabled)
+        if (rules->limits.data[i]->bound == &body->tether_bound)
             sk_limit_release(rules->limits.data[i], &world->allocator);
         else rules->limits.data[kept++] = rules->limits.data[i];
     }

@@ -82,12 +82,13 @@ static uint64_t hash_object(const skein_world *world, const sk_object *object) {
     return hash;
 }
 
-/* What is no object's: loose particles, and tethers. */
+/* What is no object's: loose particles, and tethers; not those to who is pinned now, which follow from that. */
 static uint64_t hash_rest(const skein_world *world) {
     const sk_particles *all = &world->particles;
     uint64_t hash = hash_bytes(SK_HASH_START, all->mass, all->count * sizeof *all->mass);
     for (size_t i = 0; i < world->rules.limits.count; i++) {
         const sk_limit *limit = world->rules.limits.data[i];
+        if (limit->late) continue;
         hash = hash_bytes(hash, limit->particle, limit->count * (1 + limit->anchors) * sizeof *limit->particle);
         hash = hash_bytes(hash, limit->length, limit->count * limit->anchors * sizeof *limit->length);
     }
@@ -541,7 +542,7 @@ static skein_status take_particles(sk_byte_reader *r, skein_world *world, bool a
         return sk_fail(error, SKEIN_ERROR_VALUE, "",
                        "the particles have other masses or tethers than in the snapshot" OTHER_WORLD);
     const unsigned char *flags = sk_take(r, all->count);
-    if (apply) sk_particles_forget(all);
+    if (apply) sk_particles_forget(all), world->pins_stale = true;
     static const sk_vector vectors[] = {SK_X, SK_V, SK_PREVIOUS};
     for (size_t i = 0; flags && i < all->count; i++) {
         if (flags[i] >> 1 > 2 || (flags[i] >> 1 == 2) != (all->presence[i] == SK_GONE))

@@ -29,7 +29,7 @@ skein_status sk_world_set_device(skein_world *world, sk_device *device) {
     if (world->device) world->device->release(world->device, world);
     sk_world_wake_all(world);
     world->device = device;
-    world->plan_stale = true;
+    world->plan_stale = world->pins_stale = true;
     if (device) device->ahead = false, device->behind = true;
     return SKEIN_OK;
 }
@@ -169,6 +169,7 @@ skein_status skein_particle_pin(skein_world *world, size_t particle, bool pinned
     if (!status) status = sk_world_touch(world);
     if (status) return status;
     sk_particle_pin(&world->particles, particle, pinned);
+    world->pins_stale = true;
     sk_world_rouse_at(world, particle, 1);
     sk_record_hold(world, particle, pinned);
     return SKEIN_OK;

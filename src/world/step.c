@@ -130,7 +130,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!(dt > 0) || !(dt <= 1e6))
         return sk_fail(error, SKEIN_ERROR_VALUE, "dt", "a step of %g s: expected more than 0, at most 1e6", dt);
     if (world->plan_stale) sk_world_run_compiled(world);
-    skein_status status = sk_world_arrange(world, error);
+    skein_status status = sk_world_tether_pins(world, error);
+    if (!status) status = sk_world_arrange(world, error);
     if (!status) status = sk_world_find_pins(world, error);
     if (status) return status;
     if (!world->plan_stale && world->plan_dt == dt) return SKEIN_OK;

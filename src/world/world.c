@@ -79,6 +79,8 @@ void sk_body_release(skein_world *world, sk_body *body) {
     sk_release(allocator, body->face_vertices);
     sk_release(allocator, body->corner_uv);
     sk_release(allocator, body->rest.from);
+    sk_release(allocator, body->built_pins);
+    sk_release(allocator, body->late_pins);
     sk_cut_release(body->cut, allocator);
     sk_release(allocator, body);
 }

@@ -34,6 +34,8 @@ typedef struct sk_body_type {
     bool (*live)(const void *params, const char *field);
     /* Passes changed parameters on to the body's rules. */
     void (*change)(sk_body *body, const void *params);
+    /* Adds tethers to some of its particles, pins[i] of each, once it is built (world/tethers.c); NULL: it has none. */
+    skein_status (*tether)(skein_world *world, sk_body *body, const void *params, const bool *pins, skein_error *error);
     skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
     const sk_making *making; /* what is made from its parameters; NULL: nothing */
     const sk_presets *presets; /* a choice that stands for other fields; NULL: none does */
@@ -65,6 +67,8 @@ struct sk_body {
     size_t batch_count;
     double tether_bound, strain_bound; /* of its limits */
     double tear_bound;                 /* the stretch at which its edges give way; 0: never */
+    bool *built_pins, *late_pins; /* of each particle: whether it was pinned as the body was built, and whether there are tethers to
+                                   * it because it was so later; NULL: none */
     sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
     bool enabled;
     sk_rest rest;
@@ -179,6 +183,7 @@ struct skein_world {
     bool plan_stale;  /* rules, settings or the method have changed */
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
     bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    bool pins_stale;  /* somebody was pinned, or let go */
     uint64_t arrangement; /* how often slots were found */
     bool roused;         /* rules have changed since the last step: all that sleeps is to wake */
     bool sleepers_known; /* among those that sleep so many edges go through triangles: */
@@ -315,6 +320,11 @@ skein_status sk_settings_apply(sk_allocator *allocator, const skein_kind *kind, 
                                const skein_setting *settings, skein_error *error);
 const skein_field *sk_kind_field(const skein_kind *kind, const char *name, skein_error *error);
 void sk_body_release(skein_world *world, sk_body *body);
+/* ---- tethers to what is pinned later (world/tethers.c) ---- */
+/* Notes whom a body is built to be tethered to. False when there is no memory. */
+bool sk_world_note_built_pins(skein_world *world, sk_body *body, bool tethered);
+/* Makes tethers to who is pinned now and was not as its body was built. */
+skein_status sk_world_tether_pins(skein_world *world, skein_error *error);
 /* ---- bodies that come and go (world/presence.c) ---- */
 /* Takes a body out, or back in: what it is made of stays. */
 skein_status sk_world_enable_body(skein_world *world, sk_body *body, bool enabled);
