@@ -392,7 +392,8 @@ void *skein_user(const skein_world *world, skein_handle handle);
 
 #define SKEIN_DEFAULT_STEP (1.0 / 90.0) /* seconds */
 
-/* Advances the world by `dt` seconds (more than 0, at most 1e6), in the method's substeps. Fails with SKEIN_ERROR_VALUE
+/* Advances the world by `dt` seconds (more than 0, at most 1e6), in the method's substeps: PBD and XPBD take fewer where a step is
+ * shorter than the one before, so that these get shorter by a fifth at most, or there is one more. Fails with SKEIN_ERROR_VALUE
  * where the method or device cannot run a rule, SKEIN_ERROR_NAME where a rule names a body that is not there,
  * SKEIN_ERROR_MEMORY, and with what a sparse solver returns. */
 skein_status skein_world_step(skein_world *world, double dt);

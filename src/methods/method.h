@@ -9,6 +9,9 @@
 typedef struct sk_method_type {
     skein_kind kind;
     bool takes_rigid; /* it runs constraints of infinite stiffness; without it, a world that has any is refused */
+    /* What a substep leaves uncorrected grows with the square of its length, and one of a fifth puts it right at once and has the velocity of
+     * that: a step that is shorter than the one before has fewer substeps (world/step.c). Its parameters begin with sk_substeps. */
+    bool shortens_slowly;
     /* Refuses rules that the method cannot run for another reason; NULL: there is none. */
     skein_status (*check)(const void *params, const sk_rules *rules, skein_error *error);
     /* Writes the ops of one step of `dt` seconds. */

@@ -16,7 +16,7 @@ typedef struct pbd_params {
 
 static const skein_field fields[] = {
     SK_INT(pbd_params, substeps, "substeps", "", 10, 1, 100000,
-           "equal parts that a step is cut into; more is firmer and more exact"),
+           "equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact"),
     SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer"),
     SK_BOOL(
@@ -58,6 +58,7 @@ const sk_method_type sk_pbd = {
     .kind = {"pbd", "positions corrected by a share of each error; passes forget each other and share the stiffness",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(pbd_params)},
     .takes_rigid = true,
+    .shortens_slowly = true,
     .write = write,
     .substeps = sk_substeps_of,
 };

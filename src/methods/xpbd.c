@@ -10,7 +10,7 @@ typedef struct xpbd_params {
 
 static const skein_field fields[] = {
     SK_INT(xpbd_params, substeps, "substeps", "", 10, 1, 100000,
-           "equal parts that a step is cut into; more is firmer and more exact"),
+           "equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact"),
     SK_INT(xpbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep; more substeps are better spent"),
 };
@@ -34,6 +34,7 @@ const sk_method_type sk_xpbd = {
     .kind = {"xpbd", "positions corrected constraint by constraint; stable at any stiffness", SKEIN_METHOD, fields,
              sizeof fields / sizeof *fields, sizeof(xpbd_params)},
     .takes_rigid = true,
+    .shortens_slowly = true,
     .write = write,
     .substeps = sk_substeps_of,
 };

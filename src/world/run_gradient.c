@@ -377,6 +377,7 @@ static skein_status check(skein_world *world, const skein_gradient_desc *desc) {
 typedef struct found_state {
     sk_vec4 *vectors; /* X, V and those of the last step's start, of each particle */
     double time;
+    float substep; /* of the last step before: those of a journey are all alike */
 } found_state;
 
 static const sk_vector found_vectors[] = {SK_X, SK_V, SK_PREVIOUS};
@@ -394,7 +395,7 @@ static bool find_state(skein_world *world, found_state *found) {
 
 static void leave_state(skein_world *world, found_state *found) {
     const sk_particles *all = &world->particles;
-    world->time = found->time;
+    world->time = found->time, world->substep = found->substep;
     for (size_t p = 0; p < all->count; p++)
         for (size_t i = 0; i < FOUND; i++)
             all->vector[found_vectors[i]][all->slot_of[p]] = found->vectors[FOUND * p + i];
@@ -407,11 +408,15 @@ skein_status skein_gradient(skein_world *world, const skein_gradient_desc *desc,
     SK_NEED(world, result);
     SK_NEED(world, desc->measure);
     skein_error *error = sk_world_error(world);
-    found_state found;
+    found_state found = {.substep = world->substep};
+    world->substep = 0;
     skein_status status = check(world, desc);
     if (!status) status = sk_world_compile(world, desc->dt, error);
     if (!status && !find_state(world, &found)) status = sk_fail_memory(error, "a gradient");
-    if (status) return status;
+    if (status) {
+        world->substep = found.substep;
+        return status;
+    }
     struct sk_recording *recording = world->recording;
     bool unfused = world->unfused;
     journey j = {.world = world, .desc = desc, .start = world->time};

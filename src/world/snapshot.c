@@ -1,6 +1,6 @@
 /* Snapshots: all that steps and calls have changed in a world since it was built, as bytes.
  *
- *   head       "skeinsnp", version, bytes of a real, size of all, sum of what follows
+ *   head       "skeinsnp", version, bytes of a real, size of all, sum of what follows, how long the last substep was
  *   clock      time, steps and what they have counted
  *   method     its kind and fields
  *   objects    each one's kind, fields and what it was built of (a hash); of a collider the way that it is on
@@ -28,7 +28,7 @@
 #include <stdio.h>
 
 static const char magic[8] = {'s', 'k', 'e', 'i', 'n', 's', 'n', 'p'};
-enum { AT_SIZE = 16, AT_SUM = 24 };
+enum { AT_SIZE = 16, AT_SUM = 24, AT_SUBSTEP = 32 };
 
 /* ---- values ---- */
 
@@ -302,7 +302,9 @@ static void put_all(sk_byte_writer *w, const skein_world *world) {
     const bool asks = any_asks(world);
     sk_put_u32(w, asks ? SK_SNAPSHOT_VERSION : any_eased ? 5 : any_led ? 4 : any_rests ? 3 : any_cut ? 2 : 1);
     sk_put_u32(w, sizeof(real));
-    sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, 0); // what is not known yet, and room
+    uint32_t substep;
+    memcpy(&substep, &world->substep, sizeof substep);
+    sk_put_u64(w, 0), sk_put_u64(w, 0), sk_put_u32(w, substep); // two are not known yet
     put_clock(w, world);
     sk_put_text(w, world->method->kind.name);
     put_fields(w, world, NULL);
@@ -722,6 +724,12 @@ static skein_status walk(skein_world *world, const void *bytes, const skein_snap
     return status ? status : take_easings(&r, world, info->version, apply, error);
 }
 
+static void take_substep(skein_world *world, const void *bytes) {
+    sk_byte_reader r = {bytes, SK_SNAPSHOT_HEAD, AT_SUBSTEP, false};
+    const uint32_t substep = sk_take_u32(&r);
+    memcpy(&world->substep, &substep, sizeof substep); // what is no length has no effect
+}
+
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {
     skein_error *error = sk_world_error(world);
     skein_snapshot_info info = {.version = 0};
@@ -739,6 +747,7 @@ skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size
     world->recording = NULL;
     sk_world_wake_all(world);
     status = walk(world, bytes, &info, set, true, error);
+    take_substep(world, bytes);
     sk_world_place_colliders(world);
     world->recording = recording;
     sk_record_state(world);

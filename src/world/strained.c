@@ -39,7 +39,7 @@ static bool is_strained(const sk_batch *batch, sk_isa isa, const sk_vec4 *x, boo
 }
 
 void sk_world_note_strained(skein_world *world, double dt) {
-    const double h = dt / (double)world->method->substeps(world->method_params);
+    const double h = dt / world->plan_substeps;
     world->rules.strained = false;
     for (size_t i = 0; i < world->rules.batches.count; i++) {
         sk_batch *batch = world->rules.batches.data[i];

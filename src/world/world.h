@@ -178,7 +178,9 @@ struct skein_world {
     void *method_params;
     sk_plan plan;
     sk_op *live; /* room for those of its ops that a step needs (step.c), where some are not always needed; else NULL */
-    double plan_dt;   /* the step that the plan was written for */
+    double plan_dt;   /* the step that the plan was written for, */
+    int plan_substeps; /* and how many substeps it has */
+    float substep;    /* s, of the last step; 0: there was none */
     bool sweeps_more; /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
     bool plan_stale;  /* rules, settings or the method have changed */
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
