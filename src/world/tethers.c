@@ -15,6 +15,16 @@ bool sk_world_note_built_pins(skein_world *world, sk_body *body, bool tethered) 
     return body->built_pins;
 }
 
+/* Whether its surface is what gas is in: a balloon that somebody grabs is to stay as large as it has grown. */
+static bool is_blown_up(const skein_world *world, const sk_body *body) {
+    bool is = false;
+    for (size_t i = 0; i < world->rules.batches.count; i++) {
+        const sk_batch *batch = world->rules.batches.data[i];
+        is |= batch->enclosure && batch->count && batch->particle[0] - body->first_particle < body->particle_count;
+    }
+    return is;
+}
+
 static bool is_late(const skein_world *world, const sk_body *body, size_t i) {
     const sk_particles *all = &world->particles;
     return all->pinned[body->first_particle + i] && all->mass[body->first_particle + i] > 0 &&
@@ -22,9 +32,9 @@ static bool is_late(const skein_world *world, const sk_body *body, size_t i) {
 }
 
 /* Whether others are pinned than those that it has such tethers to. */
-static bool has_others(const skein_world *world, const sk_body *body) {
+static bool has_others(const skein_world *world, const sk_body *body, bool none) {
     for (size_t i = 0; i < body->particle_count; i++)
-        if (is_late(world, body, i) != (body->late_pins && body->late_pins[i])) return true;
+        if ((!none && is_late(world, body, i)) != (body->late_pins && body->late_pins[i])) return true;
     return false;
 }
 
@@ -56,13 +66,14 @@ static bool arrange_late(skein_world *world, sk_body *body, size_t first) {
     return good;
 }
 
-static skein_status tether(skein_world *world, const sk_object *object, skein_error *error) {
+/* Instead of those that it has; `none`: and makes no others. */
+static skein_status tether(skein_world *world, const sk_object *object, bool none, skein_error *error) {
     sk_body *body = object->as.body;
     const size_t first = world->rules.limits.count;
     const bool stale = world->slots_stale;
     bool *late = sk_allocate(&world->allocator, body->particle_count * sizeof *late), any = false;
     if (!late) return sk_fail_memory(error, "tethers");
-    for (size_t i = 0; i < body->particle_count; i++) any |= late[i] = is_late(world, body, i);
+    for (size_t i = 0; i < body->particle_count; i++) any |= late[i] = !none && is_late(world, body, i);
     skein_status status = any ? object->body_type->tether(world, body, object->params, late, error) : SKEIN_OK;
     world->slots_stale = stale;
     if (!status && !arrange_late(world, body, first)) status = sk_fail_memory(error, "tethers");
@@ -72,13 +83,15 @@ static skein_status tether(skein_world *world, const sk_object *object, skein_er
 }
 
 skein_status sk_world_tether_pins(skein_world *world, skein_error *error) {
-    if (!world->pins_stale || world->device) return SKEIN_OK;
+    if (!(world->pins_stale || world->slots_stale) || world->device) return SKEIN_OK; // slots: when gas comes, too
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
-        if (object->category != SKEIN_BODY || !object->body_type->tether || !has_others(world, object->as.body)) continue;
+        if (object->category != SKEIN_BODY || !object->body_type->tether) continue;
+        const bool none = is_blown_up(world, object->as.body);
+        if (!has_others(world, object->as.body, none)) continue;
         remove_late(world, object->as.body);
-        status = tether(world, object, error);
+        status = tether(world, object, none, error);
     }
     world->pins_stale = status != SKEIN_OK;
     return status;
