@@ -392,11 +392,11 @@
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_CHOLESKY "cholesky"
 
 #define SKEIN_XPBD "xpbd" /* positions corrected constraint by constraint; stable at any stiffness */
-#define SKEIN_XPBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into; more is firmer and more exact */
+#define SKEIN_XPBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact */
 #define SKEIN_XPBD_ITERATIONS "iterations" /* a whole number; passes over the constraints in a substep; more substeps are better spent */
 
 #define SKEIN_PBD "pbd" /* positions corrected by a share of each error; passes forget each other and share the stiffness */
-#define SKEIN_PBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into; more is firmer and more exact */
+#define SKEIN_PBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact */
 #define SKEIN_PBD_ITERATIONS "iterations" /* a whole number; passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer */
 #define SKEIN_PBD_INERTIA "inertia" /* true or false; false: constraints move positions, and pins go their way; other velocities, and forces, are as if they were not */
 // clang-format on
