@@ -231,7 +231,7 @@ static void take_some_shares(void *data, int thread, size_t begin, size_t end) {
     bound_round *job = data;
     sk_touch *touch = job->touch;
     const sk_vec3 common = touch->common, gone = sk_sub(touch->shift[1], touch->shift[0]);
-    const real jump = SK_MOST_JUMP * touch->thickness;
+    const real jump = sk_most_jump(touch);
     bool any = false;
     memset(touch->lost + begin, 0, end - begin);
     for (size_t v = begin; v < end; v++) {

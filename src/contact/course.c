@@ -59,7 +59,7 @@ void sk_touch_put_course(sk_touch *touch, size_t v, bool wild) {
 
 bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real time, int after) {
     memset(touch->lost, 0, touch->skin.vertex_count);
-    const real jump = SK_MOST_JUMP * touch->thickness;
+    const real jump = sk_most_jump(touch);
     const sk_vec3 gone = sk_sub(touch->shift[1], touch->shift[0]);
     real way = 0;
     bool any = sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block, time,

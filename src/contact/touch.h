@@ -346,8 +346,11 @@ void sk_touch_choose_sides(sk_touch *touch);
 
 /* Pairs that are looked at closely are nearer than so many thicknesses. */
 #define SK_NEAR_THICKNESSES ((real)1.05)
-/* Who goes another way in a substep than expected by more thicknesses than this is lost, wherever that leads. */
-#define SK_MOST_JUMP ((real)0.4)
+/* Who goes another way in a substep than expected by more than this is lost, wherever that leads. What is much thinner than its edges are
+ * long lies still only to within more than that. */
+static inline real sk_most_jump(const sk_touch *touch) {
+    return sk_max((real)0.4 * touch->thickness, (real)0.05 * touch->skin.spacing);
+}
 /* Of a gap, so much is left in a substep. */
 #define SK_LEFT_OVER ((real)0.1)
 /* What is less than this share of the thickness does not close at all. */

@@ -149,7 +149,7 @@ static void aim(void *data, int thread, size_t begin, size_t end) {
 static void expect(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     sk_touch *touch = data;
-    const real jump = SK_MOST_JUMP * touch->thickness;
+    const real jump = sk_most_jump(touch);
     for (size_t v = begin; v < end; v++) {
         if (sk_vertex_is_out(&touch->spread, v)) continue;
         const sk_course *course = &touch->course[v];
