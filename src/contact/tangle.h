@@ -18,7 +18,9 @@
  *
  * Neighbours hold back who is led alone. So what crossings of two pieces say together leads these as wholes, too: solids out of each
  * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
- * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it.
+ * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it. Where what the crossings of
+ * two solids say adds up to little, they lead to all sides, and contact of all around holds both where they are: then there is none
+ * between these two, and they go away from where they cross.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
  * the places before a substep alone: a state that was saved and loaded goes on as it would have. */
@@ -48,6 +50,11 @@ typedef struct sk_whole {
     sk_vec3 way;       /* first the sum of what crossings say, then where it is led, m */
     real share;        /* the sum of how much of the way is its own, */
     uint32_t count;    /* of so many crossings */
+    bool stuck;        /* a solid whose crossings lead to all sides: contact with that piece leaves it alone, */
+    uint32_t with;     /* the first that it goes through */
+    uint32_t vertices; /* of a solid; */
+    sk_vec3 middle;    /* the sum of their places, m, */
+    sk_vec3 crossed;   /* and of those where it is gone through */
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
 } sk_whole;
