@@ -50,11 +50,11 @@ typedef struct sk_whole {
     sk_vec3 way;       /* first the sum of what crossings say, then where it is led, m */
     real share;        /* the sum of how much of the way is its own, */
     uint32_t count;    /* of so many crossings */
-    bool stuck;        /* a solid whose crossings lead to all sides: contact with that piece leaves it alone, */
-    uint32_t with;     /* the first that it goes through */
+    bool stuck;        /* a solid whose crossings lead to all sides: contact with others that go through something leaves it alone */
     uint32_t vertices; /* of a solid; */
     sk_vec3 middle;    /* the sum of their places, m, */
-    sk_vec3 crossed;   /* and of those where it is gone through */
+    sk_vec3 crossed;   /* and of those where it is gone through; */
+    real after;        /* of crossings: how many more are with solids that come before it than after it */
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
 } sk_whole;
