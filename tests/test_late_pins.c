@@ -11,7 +11,7 @@ enum { SIDE = 25, COUNT_OF = SIDE * SIDE, MIDDLE = SIDE * (SIDE / 2) + SIDE / 2 
 
 typedef enum kind { GRID, MESH, ROPE, KINDS } kind;
 
-/* A metre of cloth or of rope. A rope's fields are a subset of a cloth's here. */
+/* A metre of cloth or of rope. */
 static skein_world *make(kind k, const char *pins, skein_handle *body) {
     skein_world *world = new_world("xpbd", 10);
     add_particle(world, 1, 9, 9, 9); // so that the body does not begin with particle 0
@@ -32,7 +32,7 @@ static double farthest_from(const skein_world *world, size_t who) {
     return most;
 }
 
-/* Leads one in a circle that tightens no more after a fifth of a second; the greatest distance that somebody gets from it. */
+/* Leads one in a circle, at full speed from a fifth of a second on; the greatest distance that somebody gets from it. */
 static double lead(skein_world *world, uint32_t who, double speed, int frames) {
     const double radius = 0.5, ramp = 0.2;
     const vec3 at = position_of(world, who);

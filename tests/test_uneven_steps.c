@@ -75,12 +75,15 @@ static void substeps_come_back(void **state) {
     steps(world, 1, 1.0 / 60);
     assert_int_equal(statistics_of(world).substeps, SUBSTEPS);
     skein_world_destroy(world);
-    // methods that integrate forces take what they are told, for it keeps them stable
+    // methods that integrate forces take what they are told, for it keeps them stable; and leave nothing that would be too much at once
     world = new_world("symplectic_euler", SUBSTEPS);
     add_particle(world, 1, 0, 0, 0);
     steps(world, 1, 1.0);
     steps(world, 1, 1.0 / 60);
     assert_int_equal(statistics_of(world).substeps, 2 * SUBSTEPS);
+    OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", SUBSTEPS))));
+    steps(world, 1, 1.0 / 600);
+    assert_int_equal(statistics_of(world).substeps, 3 * SUBSTEPS);
     skein_world_destroy(world);
 }
 

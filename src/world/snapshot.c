@@ -724,10 +724,11 @@ static skein_status walk(skein_world *world, const void *bytes, const skein_snap
     return status ? status : take_easings(&r, world, info->version, apply, error);
 }
 
+/* Of what is no length, nothing comes. */
 static void take_substep(skein_world *world, const void *bytes) {
     sk_byte_reader r = {bytes, SK_SNAPSHOT_HEAD, AT_SUBSTEP, false};
     const uint32_t substep = sk_take_u32(&r);
-    memcpy(&world->substep, &substep, sizeof substep); // what is no length has no effect
+    memcpy(&world->substep, &substep, sizeof substep);
 }
 
 skein_status sk_snapshot_read(skein_world *world, const void *bytes, size_t size, sk_set_method *set) {

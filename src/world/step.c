@@ -132,7 +132,7 @@ static bool make_live(skein_world *world) {
  * instead of four fifths: 0.004); so do irregular meshes, and in contact. Not less than one more, or frames of 1/144 s stay with one substep. */
 static int substeps_of(const skein_world *world, double dt) {
     const int most = world->method->substeps(world->method_params);
-    if (!world->method->shortens_slowly || !(world->substep > 0)) return most;
+    if (!world->method->shortens_slowly || !(world->substep > 0) || isinf(world->substep)) return most;
     const double as_long = dt / (double)world->substep;
     return (int)fmin(fmax(floor(1.25 * as_long), floor(as_long + 1e-3) + 1), most);
 }
@@ -280,7 +280,7 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
     world->unsolved += world->solve.unsolved;
     world->solver_failures += world->solve.failures;
     world->substeps += (uint64_t)world->plan_substeps;
-    world->substep = (float)(dt / world->plan_substeps);
+    world->substep = world->method->shortens_slowly ? (float)(dt / world->plan_substeps) : 0;
     sk_world_tell_of_meetings(world);
     if (sk_world_tears(world) && (status = sk_world_tear(world, error))) return status;
     if (!world->device) sk_world_reorder(world);

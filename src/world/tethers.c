@@ -83,12 +83,12 @@ static skein_status tether(skein_world *world, const sk_object *object, bool non
 }
 
 skein_status sk_world_tether_pins(skein_world *world, skein_error *error) {
-    if (!(world->pins_stale || world->slots_stale) || world->device) return SKEIN_OK; // slots: when gas comes, too
+    if (!world->pins_stale && !world->slots_stale) return SKEIN_OK; // slots: when gas comes, too
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_BODY || !object->body_type->tether) continue;
-        const bool none = is_blown_up(world, object->as.body);
+        const bool none = world->device || is_blown_up(world, object->as.body); // cards run none
         if (!has_others(world, object->as.body, none)) continue;
         remove_late(world, object->as.body);
         status = tether(world, object, none, error);

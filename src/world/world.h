@@ -180,7 +180,7 @@ struct skein_world {
     sk_op *live; /* room for those of its ops that a step needs (step.c), where some are not always needed; else NULL */
     double plan_dt;   /* the step that the plan was written for, */
     int plan_substeps; /* and how many substeps it has */
-    float substep;    /* s, of the last step; 0: there was none */
+    float substep;    /* s, of the last step, if its method shortens slowly; else 0 */
     bool sweeps_more; /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
     bool plan_stale;  /* rules, settings or the method have changed */
     bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
