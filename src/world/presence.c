@@ -136,13 +136,7 @@ static void remove_rules(skein_world *world, const sk_body *body) {
         else rules->batches.data[kept++] = rules->batches.data[i];
     }
     rules->batches.count = kept;
-    kept = 0;
-    for (size_t i = 0; i < rules->limits.count; i++) {
-        if (rules->limits.data[i]->bound == &body->tether_bound)
-            sk_limit_release(rules->limits.data[i], &world->allocator);
-        else rules->limits.data[kept++] = rules->limits.data[i];
-    }
-    rules->limits.count = kept;
+    sk_world_remove_tethers(world, body, false);
 }
 
 /* Nobody who gets the indices is led to where these were to go, or along their tracks. */

@@ -38,15 +38,19 @@ static bool has_others(const skein_world *world, const sk_body *body, bool none)
     return false;
 }
 
-static void remove_late(skein_world *world, sk_body *body) {
+void sk_world_remove_tethers(skein_world *world, const sk_body *body, bool late_alone) {
     sk_rules *rules = &world->rules;
     size_t kept = 0;
     for (size_t i = 0; i < rules->limits.count; i++) {
-        if (rules->limits.data[i]->late && rules->limits.data[i]->bound == &body->tether_bound)
-            sk_limit_release(rules->limits.data[i], &world->allocator);
-        else rules->limits.data[kept++] = rules->limits.data[i];
+        sk_limit *limit = rules->limits.data[i];
+        if (limit->bound == &body->tether_bound && (limit->late || !late_alone)) sk_limit_release(limit, &world->allocator);
+        else rules->limits.data[kept++] = limit;
     }
     rules->limits.count = kept;
+}
+
+static void remove_late(skein_world *world, sk_body *body) {
+    sk_world_remove_tethers(world, body, true);
     sk_release(&world->allocator, body->late_pins);
     body->late_pins = NULL;
     world->plan_stale = true;

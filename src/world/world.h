@@ -325,6 +325,8 @@ void sk_body_release(skein_world *world, sk_body *body);
 /* ---- tethers to what is pinned later (world/tethers.c) ---- */
 /* Notes whom a body is built to be tethered to. False when there is no memory. */
 bool sk_world_note_built_pins(skein_world *world, sk_body *body, bool tethered);
+/* Releases a body's tethers, or those of them that are `late`. */
+void sk_world_remove_tethers(skein_world *world, const sk_body *body, bool late_alone);
 /* Makes tethers to who is pinned now and was not as its body was built. */
 skein_status sk_world_tether_pins(skein_world *world, skein_error *error);
 /* ---- bodies that come and go (world/presence.c) ---- */
