@@ -75,33 +75,42 @@ static void so_they_do_under_other_methods(void **state) {
 }
 
 /* A cloth lies over a jelly and falls into it while there is no contact; where there is again, folds of it that are all through the jelly do not
- * come out. They had 180 J after half a second, of 22 to fall with, and 1,800 after 2.5 s, for who is led apart pulls on springs, substep after substep. */
+ * come out. They had 180 J after half a second, of 22 to fall with, and 1,800 after 2.5 s, for who is led apart pulls on springs, substep after substep;
+ * then, in other poses, up to 1,700 J, for nothing of what the jelly lost on the light cloth below it went to the ground: it fell and fell, and stayed
+ * where it was. */
 static void what_cannot_come_apart_does_not_fly(void **state) {
     (void)state;
     enum { TURN = 120, BACK = 60, AFTER = 60 };
-    skein_world *world = skein_world_create(NULL, NULL);
-    assert_non_null(world);
-    skein_handle contact;
-    add_gravity(world);
-    OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
-    OK(world, skein_force_add(world, "contact", NULL, &contact));
-    OK(world, skein_collider_add(world, "plane", NULL, NULL));
-    OK(world, skein_body_add(world, "lattice", NULL,
-                             SKEIN_SETTINGS(SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("position", 0, 0.21, 0),
-                                            SKEIN_REAL("structural.stiffness", 2000)), NULL));
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_PAIR("size", 0.8, 0.8), SKEIN_VEC3("position", 0, 0.5, 0)), NULL));
-    steps(world, TURN, 1.0 / 60);
-    OK(world, skein_set(world, contact, "enabled", skein_number(0)));
-    steps(world, BACK, 1.0 / 60);
-    OK(world, skein_set(world, contact, "enabled", skein_number(1)));
-    double most = 0;
-    for (int frame = 0; frame < AFTER; frame++) {
-        steps(world, 1, 1.0 / 60);
-        most = fmax(most, statistics_of(world).kinetic_energy);
+    static const struct {
+        double x, z, yaw;
+    } poses[] = {{0, 0, 0}, {-0.002, -0.047, 24}, {-0.043, 0.032, 42}};
+    for (size_t pose = 0; pose < COUNT(poses); pose++) {
+        skein_world *world = skein_world_create(NULL, NULL);
+        assert_non_null(world);
+        skein_handle contact;
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
+        OK(world, skein_force_add(world, "contact", NULL, &contact));
+        OK(world, skein_collider_add(world, "plane", NULL, NULL));
+        OK(world, skein_body_add(world, "lattice", NULL,
+                                 SKEIN_SETTINGS(SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("position", 0, 0.21, 0),
+                                                SKEIN_REAL("structural.stiffness", 2000)), NULL));
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_PAIR("size", 0.8, 0.8),
+                                                SKEIN_VEC3("position", poses[pose].x, 0.5, poses[pose].z),
+                                                SKEIN_VEC3("rotation", 0, poses[pose].yaw, 0)), NULL));
+        steps(world, TURN, 1.0 / 60);
+        OK(world, skein_set(world, contact, "enabled", skein_number(0)));
+        steps(world, BACK, 1.0 / 60);
+        OK(world, skein_set(world, contact, "enabled", skein_number(1)));
+        double most = 0;
+        for (int frame = 0; frame < AFTER; frame++) {
+            steps(world, 1, 1.0 / 60);
+            most = fmax(most, statistics_of(world).kinetic_energy);
+        }
+        if (!(most < 10)) fail_msg("pose %zu: %g J", pose, most); // of 16 poses in both precisions: 1.1 to 6.2
+        skein_world_destroy(world);
     }
-    assert_true(most < 60);
-    skein_world_destroy(world);
 }
 
 /* As somebody stacks them who is wrong about their size, with faces in one plane; and turned, deep in each other, with large cells. Their

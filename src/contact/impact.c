@@ -18,40 +18,84 @@
  * through the other feature kept all of its velocity, and silk lay with 23 m/s. */
 #include <string.h>
 
+#include "base/union_find.h"
 #include "contact/touch.h"
 
 /* ---- who loses it ---- */
 
-/* What pieces of the skin lose of what they are held back by: nothing; what all lose together who are tangled is given back to all of them; or
- * all of it, since somebody is pinned, or has yielded to a pin. */
+/* What pieces of the skin lose of what they are held back by: nothing; what all lose together who are tangled in one group is given back to
+ * all of them; or all of it, since somebody is pinned, or has yielded to a pin. */
 enum { LOSES_NOTHING, SHARES_LOSS, LOSES_ALL };
 
-/* Two solids are led out of each other as they are, and gain nothing by it. */
-static void find_tangled(sk_touch *touch) {
+/* Of pieces; of the first piece of a group its lost momentum, kg m/s, and the mass of who shares it. */
+static sk_whole *group_of(const sk_touch *touch, uint32_t piece) {
+    return &touch->tangle.whole[sk_union_root(touch->tangle.group, piece)];
+}
+
+/* Two solids are led out of each other as they are, and gain nothing by it. Whether there is anything else. */
+static bool find_tangled(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
+    bool any = false;
+    for (uint32_t i = 0; i < skin->vertex_count; i++) touch->tangle.group[i] = i;
     for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
         const sk_crossing *crossing = &touch->tangle.crossing.data[i];
         const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
-        if (!skin->closed[one] || !skin->closed[other]) touch->loses[one] = touch->loses[other] = SHARES_LOSS;
+        sk_union_join(touch->tangle.group, one, other);
+        if (skin->closed[one] && skin->closed[other]) continue;
+        touch->loses[one] = touch->loses[other] = SHARES_LOSS;
+        any = true;
+    }
+    return any;
+}
+
+/* Who holds each other back is of one group, whether it is tangled or not. */
+static void join_divided(sk_touch *touch) {
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        for (size_t i = 0; i < touch->divided[sort].count; i++) {
+            const uint32_t *v = touch->divided[sort].data[i].corner;
+            sk_union_join(touch->tangle.group, touch->skin.piece[v[0]], touch->skin.piece[v[sort == SK_EDGES ? 2 : 1]]);
+        }
+}
+
+/* Whether anybody shares what he loses. */
+static bool find_losing(sk_touch *touch) {
+    const sk_skin *skin = &touch->skin;
+    memset(touch->loses, LOSES_NOTHING, skin->vertex_count);
+    const bool shared = touch->tangle.any && !touch->implicit && find_tangled(touch);
+    if (shared) join_divided(touch);
+    for (size_t v = 0; v < skin->vertex_count; v++) {
+        if (touch->inverse[v] > 0 && !sk_has_yielded(touch, v)) continue;
+        touch->loses[skin->piece[v]] = LOSES_ALL;
+        if (shared) group_of(touch, skin->piece[v])->held = true;
+    }
+    return shared;
+}
+
+/* Nothing that leads into who holds a group up comes back: pins, or the colliders below it. (What has a jelly's weight on it is light: its own
+ * share of what the jelly had lost was all that a floor took. So a jelly and a cloth tangled in it fell on and on while they lay there, up to
+ * 23 m/s, and were as fast as that when they came apart.) */
+static void lose_to_supports(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const sk_vec4 *support = run->vector[SK_SUPPORT];
+    for (size_t v = 0; v < touch->skin.vertex_count && support; v++) {
+        const sk_vec3 n = sk_xyz(sk_load(support, op->packed, touch->slot[v]));
+        if (!(sk_dot(n, n) > 0)) continue;
+        double *lost = group_of(touch, touch->skin.piece[v])->lost;
+        const double into = lost[0] * (double)n.x + lost[1] * (double)n.y + lost[2] * (double)n.z;
+        if (into < 0) lost[0] -= into * (double)n.x, lost[1] -= into * (double)n.y, lost[2] -= into * (double)n.z;
     }
 }
 
-static void find_losing(sk_touch *touch) {
-    memset(touch->loses, LOSES_NOTHING, touch->skin.vertex_count);
-    if (touch->tangle.any && !touch->implicit) find_tangled(touch);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++)
-        if (!(touch->inverse[v] > 0) || sk_has_yielded(touch, v)) touch->loses[touch->skin.piece[v]] = LOSES_ALL;
-}
-
-/* Gives all who are tangled a share of the momentum that they have lost. */
-static void give_back(sk_touch *touch, const sk_run *run, const sk_op *op, const double lost[3]) {
-    double mass = 0;
-    for (int pass = 0; pass < 2; pass++)
-        for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-            if (touch->loses[touch->skin.piece[v]] != SHARES_LOSS) continue;
-            if (pass) sk_add_at(run->vector[SK_V], op->packed, touch->slot[v], (sk_vec3){(real)(lost[0] / mass), (real)(lost[1] / mass), (real)(lost[2] / mass)});
-            else mass += 1 / (double)touch->inverse[v];
-        }
+/* Gives each of a group that is tangled his share of the momentum that the group has lost. */
+static void give_back(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    lose_to_supports(touch, run, op);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        const uint32_t piece = touch->skin.piece[v];
+        const sk_whole *group = group_of(touch, piece);
+        if (touch->loses[piece] != SHARES_LOSS || group->held) continue;
+        const double share = 1 / group->mass;
+        sk_add_at(run->vector[SK_V], op->packed, touch->slot[v],
+                  (sk_vec3){(real)(share * group->lost[0]), (real)(share * group->lost[1]), (real)(share * group->lost[2])});
+    }
 }
 
 /* A surface that is pinned loses what it is held back by to its pins: wound tightly, it would go through itself. And what is tangled to what
@@ -59,20 +103,22 @@ static void give_back(sk_touch *touch, const sk_run *run, const sk_op *op, const
  * each; where it was lost to nobody they drove off, with 500 J after 400.) */
 void sk_touch_lose_velocities(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const real rate = (real)(1 / op->dt);
-    double lost[3] = {0, 0, 0}; // momentum
-    find_losing(touch);
+    const bool shared = find_losing(touch);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        const uint8_t loses = touch->loses[touch->skin.piece[v]];
-        if (!(touch->share[v] < 1) || loses == LOSES_NOTHING) continue;
+        const uint32_t piece = touch->skin.piece[v];
+        const uint8_t loses = touch->loses[piece];
+        if (loses == LOSES_NOTHING) continue;
+        const double mass = loses == SHARES_LOSS ? 1 / (double)touch->inverse[v] : 0;
+        sk_whole *group = loses == SHARES_LOSS ? group_of(touch, piece) : NULL;
+        if (group) group->mass += mass;
+        if (!(touch->share[v] < 1)) continue;
         const size_t slot = touch->slot[v];
         const sk_vec3 to = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot));
         const sk_vec3 change = sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v])));
         sk_add_at(run->vector[SK_V], op->packed, slot, change);
-        if (loses == LOSES_ALL) continue;
-        const double mass = 1 / (double)touch->inverse[v];
-        lost[0] -= mass * (double)change.x, lost[1] -= mass * (double)change.y, lost[2] -= mass * (double)change.z;
+        if (group) group->lost[0] -= mass * (double)change.x, group->lost[1] -= mass * (double)change.y, group->lost[2] -= mass * (double)change.z;
     }
-    if (lost[0] != 0 || lost[1] != 0 || lost[2] != 0) give_back(touch, run, op, lost);
+    if (shared) give_back(touch, run, op);
 }
 
 /* ---- who shares it ---- */

@@ -257,8 +257,9 @@ static bool reserve(sk_touch *touch, sk_allocator *allocator) {
     tangle->size = sk_allocate(allocator, vertices * sizeof *tangle->size);
     tangle->lead = sk_allocate(allocator, vertices * sizeof *tangle->lead);
     tangle->whole = sk_allocate(allocator, 2 * vertices * sizeof *tangle->whole);
+    tangle->group = sk_allocate(allocator, vertices * sizeof *tangle->group);
     tangle->marked = sk_allocate(allocator, vertices);
-    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->whole && tangle->marked)
+    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->whole && tangle->group && tangle->marked)
         tangle->cut = sk_allocate(allocator, touch->skin.edge_count + 1);
     if (!tangle->cut) sk_tangle_release(tangle, allocator);
     return tangle->cut != NULL;
@@ -449,8 +450,8 @@ bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x,
 }
 
 void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator) {
-    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->marked,
-                      tangle->cut, tangle->crossing.data};
+    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->group,
+                      tangle->marked, tangle->cut, tangle->crossing.data};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     *tangle = (sk_tangle){.any = false};
 }

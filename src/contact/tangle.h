@@ -57,6 +57,8 @@ typedef struct sk_whole {
     real after;        /* of crossings: how many more are with solids that come before it than after it */
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
+    bool held;            /* of a group's first piece (impact.c): somebody of it is pinned; */
+    double lost[3], mass; /* the momentum that the group has lost, kg m/s, and the mass of who shares it, kg */
 } sk_whole;
 
 typedef struct sk_tangle {
@@ -73,6 +75,7 @@ typedef struct sk_tangle {
     uint32_t *part, *size;      /* the first vertex of its part, and how many are in the part of a first one */
     sk_vec4 *lead;              /* the sum of where its crossings lead it, m; w: how many do */
     sk_whole *whole;            /* of the pieces of the skin, and behind these of parts */
+    uint32_t *group;            /* of pieces: another one of who is tangled with it, or holds it back (impact.c) */
     uint8_t *marked;            /* it is not where the last bound left it; it is led */
     uint8_t *cut;               /* of edges: they go through something */
 } sk_tangle;
