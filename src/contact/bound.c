@@ -467,6 +467,7 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
         touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);
         run->no_memory |= !touch->followed;
     }
+    if (touch->tangle.any) sk_touch_part_solids(touch, run, op);
     bool keeps = touch->found && touch->followed;
     run->no_memory |= !sk_tangle_leave(touch, run->allocator, run->vector[SK_X], keeps, run->last_iteration);
 }

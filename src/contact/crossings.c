@@ -28,8 +28,14 @@ static bool have_corner(const uint32_t edge[2], const uint32_t t[3]) {
     return (edge[0] == t[0]) | (edge[0] == t[1]) | (edge[0] == t[2]) | (edge[1] == t[0]) | (edge[1] == t[1]) | (edge[1] == t[2]);
 }
 
-static bool crosses(const sk_vec4 *x, const uint32_t edge[2], const uint32_t t[3]) {
-    const sk_vec4 *p = &x[edge[0]], *q = &x[edge[1]], *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
+static sk_vec4 moved(sk_vec4 x, sk_vec3 by) {
+    return (sk_vec4){x.x + by.x, x.y + by.y, x.z + by.z, x.w};
+}
+
+static bool crosses(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+    const sk_vec4 *x = touch->p, *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
+    const sk_vec3 by = sk_touch_aside(touch, edge[0], t[0]);
+    const sk_vec4 first = moved(x[edge[0]], by), second = moved(x[edge[1]], by), *p = &first, *q = &second;
     double one = volume(a, b, c, p), two = volume(a, b, c, q);
     if (!((one > 0 && two < 0) || (one < 0 && two > 0))) return false; // most
     double least = flat(a, b, c);
@@ -47,7 +53,7 @@ static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *
         for (uint32_t t = triangles->first_triangle; t < triangles->first_triangle + triangles->triangles; t++) {
             if (have_corner(skin->edge[e], skin->triangle[t])) continue; // as around a leaf most have
             if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
-            if (!crosses(touch->p, skin->edge[e], skin->triangle[t])) continue;
+            if (!crosses(touch, skin->edge[e], skin->triangle[t])) continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
             list->data[list->count++] = (sk_crossing){e, t};
         }

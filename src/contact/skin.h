@@ -22,7 +22,7 @@ typedef struct sk_skin {
     size_t vertex_count, edge_count, triangle_count, leaf_count;
     uint32_t *particle; /* of vertices: the user's index */
     uint32_t *piece;    /* of vertices: what hangs together has one number, that of one of them */
-    uint8_t *closed;    /* of pieces: its surface is closed */
+    int8_t *closed;     /* of pieces: its surface is closed, and its faces look out of it, 1, or into it, -1; or it is open, 0 */
     sk_inner *inner;
     size_t inner_count;
     sk_vec4 *built;     /* as they were built */

@@ -32,7 +32,24 @@ static bool second_is_inner(const sk_tangle *tangle, const uint32_t edge[2]) {
     return tangle->size[b] < tangle->size[a] || (tangle->size[b] == tangle->size[a] && b < a);
 }
 
-static inner_end find_inner(const sk_tangle *tangle, const uint32_t edge[2], const uint32_t t[3]) {
+static bool is_solid(const sk_skin *skin, uint32_t v) {
+    return skin->closed[skin->piece[v]];
+}
+
+static sk_vec3 side_of(const sk_vec4 *x, uint32_t from, uint32_t to) {
+    return sk_sub(sk_xyz(x[to]), sk_xyz(x[from]));
+}
+
+/* Of an edge of a solid that goes through another one's triangle the end behind this is inside, whatever is larger. */
+static inner_end find_inside(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+    const sk_vec3 along = side_of(touch->p, edge[0], edge[1]), n = sk_cross(side_of(touch->p, t[0], t[1]), side_of(touch->p, t[0], t[2]));
+    return sk_dot(along, n) * (real)touch->skin.closed[touch->skin.piece[t[0]]] > 0 ? FIRST_END : SECOND_END;
+}
+
+static inner_end find_inner(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+    const sk_tangle *tangle = &touch->tangle;
+    if (touch->skin.piece[edge[0]] != touch->skin.piece[t[0]] && is_solid(&touch->skin, edge[0]) && is_solid(&touch->skin, t[0]))
+        return find_inside(touch, edge, t);
     if (tangle->part[edge[0]] == tangle->part[edge[1]]) return UNKNOWN;
     const bool second = second_is_inner(tangle, edge);
     const uint32_t size = size_at(tangle, edge[second]);
@@ -66,10 +83,6 @@ static sk_vec3 unit(sk_vec3 a) {
     return length > (real)1e-18 ? sk_scale(1 / length, a) : (sk_vec3){0, 0, 0};
 }
 
-static sk_vec3 side_of(const sk_vec4 *x, uint32_t from, uint32_t to) {
-    return sk_sub(sk_xyz(x[to]), sk_xyz(x[from]));
-}
-
 static sk_vec3 normal_of(const sk_vec4 *x, const uint32_t t[3]) {
     return unit(sk_cross(side_of(x, t[0], t[1]), side_of(x, t[0], t[2])));
 }
@@ -98,10 +111,10 @@ static sk_vec3 way_to_shorten(const sk_vec4 *x, const uint32_t edge[2], const ui
     return sk_scale(1 / sk_sqrt(sk_dot(way, way) + small), way);
 }
 
-/* Where one of its ends is to move, to be on the other side of the triangle. */
-static sk_vec3 way_through(const sk_vec4 *x, uint32_t end, const uint32_t t[3]) {
+/* Where one of its ends is to move, to be on the side of the triangle where the other one is. */
+static sk_vec3 way_through(const sk_vec4 *x, const uint32_t edge[2], int end, const uint32_t t[3]) {
     const sk_vec3 n = normal_of(x, t);
-    return sk_scale(sk_dot(n, side_of(x, t[0], end)) > 0 ? -1 : 1, n);
+    return sk_scale(sk_dot(n, side_of(x, edge[end], edge[1 - end])) < 0 ? -1 : 1, n);
 }
 
 /* How much farther the edge goes than the triangle: the lighter one goes, of 1 together. */
@@ -119,10 +132,6 @@ static void lead(sk_tangle *tangle, uint32_t v, sk_vec3 way) {
 
 /* Where a sheet is gone through, who is lighter may be held by pins: so both go. */
 static const real half = (real)0.5;
-
-static bool is_solid(const sk_skin *skin, uint32_t v) {
-    return skin->closed[skin->piece[v]];
-}
 
 static sk_whole *piece_of(const sk_touch *touch, uint32_t v) {
     return &touch->tangle.whole[touch->skin.piece[v]];
@@ -148,7 +157,7 @@ static void add_place(sk_whole *whole, sk_vec4 built) {
 static void add_cut_solid(sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
     sk_tangle *tangle = &touch->tangle;
     if (!is_solid(&touch->skin, edge[0]) || is_solid(&touch->skin, t[0]) || tangle->part[edge[0]] == tangle->part[edge[1]]) return;
-    const sk_vec3 way = way_through(touch->p, edge[second_is_inner(tangle, edge)], t);
+    const sk_vec3 way = way_through(touch->p, edge, second_is_inner(tangle, edge), t);
     add_way(piece_of(touch, edge[0]), way, half);
     uint32_t largest = 0;
     for (int c = 0; c < 3; c++) largest = size_at(tangle, t[c]) > largest ? size_at(tangle, t[c]) : largest;
@@ -168,10 +177,18 @@ static void add_sheets(sk_touch *touch, const uint32_t edge[2], const uint32_t t
     add_way(piece_of(touch, t[0]), sk_scale(-1, way), half);
 }
 
+/* Whether an edge only goes through a triangle since its solid is taken to be a little aside (sides.c): one of its ends is in the triangle's plane. */
+static bool is_by_nothing(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+    const sk_vec3 n = normal_of(touch->p, t);
+    const real first = sk_dot(n, side_of(touch->p, t[0], edge[0])), second = sk_dot(n, side_of(touch->p, t[0], edge[1]));
+    return sk_min(sk_abs(first), sk_abs(second)) <= 2 * sk_length(sk_touch_aside(touch, edge[0], t[0]));
+}
+
 /* Notes of one of two solids whether the other one comes before it, and where they cross. */
-static void note_crossed(sk_touch *touch, uint32_t v, uint32_t other, const uint32_t edge[2]) {
+static void note_crossed(sk_touch *touch, uint32_t v, uint32_t other, const uint32_t edge[2], const uint32_t t[3]) {
     sk_whole *whole = piece_of(touch, v);
     whole->after += touch->skin.piece[other] < touch->skin.piece[v] ? 1 : -1;
+    if (is_by_nothing(touch, edge, t)) whole->by_nothing++;
     whole->crossed = sk_add(whole->crossed, sk_scale(half, sk_add(sk_xyz(touch->p[edge[0]]), sk_xyz(touch->p[edge[1]]))));
 }
 
@@ -186,8 +203,8 @@ static void add_wholes(sk_touch *touch, const uint32_t edge[2], const uint32_t t
     }
     add_way(piece_of(touch, edge[0]), way, share);
     add_way(piece_of(touch, t[0]), sk_scale(-1, way), 1 - share);
-    note_crossed(touch, edge[0], t[0], edge);
-    note_crossed(touch, t[0], edge[0], edge);
+    note_crossed(touch, edge[0], t[0], edge, t);
+    note_crossed(touch, t[0], edge[0], edge, t);
 }
 
 /* Leads both features of a crossing apart by twice a step. */
@@ -195,9 +212,9 @@ static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_
                           real step) {
     sk_tangle *tangle = &touch->tangle;
     add_cut_solid(touch, edge, t);
-    inner_end inner = find_inner(tangle, edge, t);
+    inner_end inner = find_inner(touch, edge, t);
     if (inner == THEIRS) return;
-    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge[inner], t);
+    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge, inner, t);
     const real share = share_of(touch->p, edge, t);
     add_wholes(touch, edge, third, faces, t, inner, way, share);
     way = sk_scale(2 * step, way);
@@ -308,7 +325,7 @@ static void find_stuck(sk_touch *touch) {
     for (uint32_t i = 0; i < skin->vertex_count; i++) {
         sk_whole *whole = &touch->tangle.whole[i];
         const real count = (real)whole->count;
-        if (!whole->vertices || sk_length(whole->way) > least * count) continue;
+        if (!whole->vertices || sk_length(whole->way) > (2 * whole->by_nothing < whole->count ? least : (real)0.65) * count) continue;
         const sk_vec3 away = sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
         whole->stuck = true;
         whole->way = sk_length(away) > (real)0.1 * touch->thickness ? away : (sk_vec3){whole->after, 0, 0};

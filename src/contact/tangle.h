@@ -54,11 +54,15 @@ typedef struct sk_whole {
     uint32_t vertices; /* of a solid; */
     sk_vec3 middle;    /* the sum of their places, m, */
     sk_vec3 crossed;   /* and of those where it is gone through; */
+    uint32_t by_nothing; /* of crossings: how many there are since it has faces in one plane with another one; */
     real after;        /* of crossings: how many more are with solids that come before it than after it */
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
-    bool held;            /* of a group's first piece (impact.c): somebody of it is pinned; */
-    double lost[3], mass; /* the momentum that the group has lost, kg m/s, and the mass of who shares it, kg */
+    /* of solids, or of a group's first piece (impact.c) */
+    bool held;             /* somebody of it is pinned */
+    double momentum[3];    /* kg m/s; of a group: what it has lost */
+    double mass;           /* kg; of a group: of who shares that */
+    double gained[3];      /* m/s: what all of a solid gain, since it is led out of another one */
 } sk_whole;
 
 typedef struct sk_tangle {

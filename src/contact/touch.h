@@ -294,6 +294,8 @@ bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
 
 /* Takes from who is held back, and X has been stored where he may go, what he loses of velocity. */
 void sk_touch_lose_velocities(sk_touch *touch, const sk_run *run, const sk_op *op);
+/* Takes from solids that are led out of each other the velocity with which they come nearer. */
+void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op);
 /* Then shares what he has with what holds him. False when there is no memory. */
 bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const sk_run *run, const sk_op *op);
 
@@ -337,6 +339,8 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
 
 /* ---- sides.c ---- */
 
+/* How far from where it is the solid with vertex `one` is taken to be, against that with vertex `other`, m; 0 where these are no two solids. */
+sk_vec3 sk_touch_aside(const sk_touch *touch, uint32_t one, uint32_t other);
 /* Gives a pair without a gap the normal that all pairs of its surfaces have, where these are in one place. */
 void sk_touch_choose_side(sk_touch *touch, int sort, uint32_t entry);
 /* The same of all that are near and have none. */

@@ -4,16 +4,30 @@
 
 #define NOBODY UINT32_MAX
 
+/* Six times the volume in front of the origin that a triangle adds. */
+static double volume_of(const sk_skin *skin, const uint32_t t[3]) {
+    const sk_vec3 a = sk_xyz(skin->built[t[0]]), b = sk_xyz(skin->built[t[1]]), c = sk_xyz(skin->built[t[2]]);
+    return (double)sk_dot(a, sk_cross(b, c));
+}
+
 static bool find_closed(sk_skin *skin, sk_allocator *allocator) {
-    int32_t *open = sk_allocate(allocator, (skin->vertex_count + 1) * sizeof *open);
-    skin->closed = sk_allocate(allocator, skin->vertex_count + 1);
-    if (open && skin->closed) {
-        for (size_t t = 0; t < skin->triangle_count; t++) open[skin->piece[skin->triangle[t][0]]] += 3;
+    const size_t vertices = skin->vertex_count + 1;
+    int32_t *open = sk_allocate(allocator, vertices * sizeof *open);
+    double *volume = sk_allocate(allocator, vertices * sizeof *volume);
+    skin->closed = sk_allocate(allocator, vertices);
+    const bool good = open && volume && skin->closed;
+    if (good) {
+        for (size_t t = 0; t < skin->triangle_count; t++) {
+            const uint32_t piece = skin->piece[skin->triangle[t][0]];
+            open[piece] += 3;
+            volume[piece] += volume_of(skin, skin->triangle[t]);
+        }
         for (size_t e = 0; e < skin->edge_count; e++) open[skin->piece[skin->edge[e][0]]] -= 2;
-        for (size_t p = 0; p < skin->vertex_count; p++) skin->closed[p] = open[p] == 0;
+        for (size_t p = 0; p < skin->vertex_count; p++) skin->closed[p] = open[p] != 0 ? 0 : volume[p] < 0 ? -1 : 1;
     }
     sk_release(allocator, open);
-    return open && skin->closed;
+    sk_release(allocator, volume);
+    return good;
 }
 
 /* The piece that is all of a body's surface, if it is closed, or NOBODY. */
