@@ -311,11 +311,12 @@ static real share_at(const sk_whole *whole, sk_vec4 built) {
 /* Finds solids whose crossings lead to all sides; they go away from where these are in the mean, or, if that is nowhere, along x. Two cubes of 1 m
  * and 8 particles a side, 0.8 m above each other, beside each other by 3 cm or not at all, drove over the ground together for ever, with 22 to 30 J, for
  * their ways added up to 0.05 of what they were, and faces in one plane held each other; turned, and half in each other, with 5 a side, they had
- * 85 J and more with time. Now they are apart after one or two seconds. Of 11 heaps of two to five cubes in each other 4 stayed so, with up
- * to 9,000 J, and none with 0.15, 0.3 or 0.5 here. */
+ * 85 J and more with time. Of 11 heaps of two to five cubes in each other 4 stayed so, with up to 9,000 J, and none with 0.15, 0.3 or 0.5 here. With 0.6
+ * pairs that chance puts in each other take longer than a second; but where faces are in one plane it is 0.58, a third each along three faces, and
+ * contact of what is around these holds the two. */
 static void find_stuck(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
-    const real least = (real)0.5;
+    const real least = (real)0.5, least_by_nothing = (real)0.65;
     for (uint32_t v = 0; v < skin->vertex_count; v++) {
         sk_whole *whole = piece_of(touch, v);
         if (!whole->count || !is_solid(skin, v)) continue;
@@ -324,8 +325,8 @@ static void find_stuck(sk_touch *touch) {
     }
     for (uint32_t i = 0; i < skin->vertex_count; i++) {
         sk_whole *whole = &touch->tangle.whole[i];
-        const real count = (real)whole->count;
-        if (!whole->vertices || sk_length(whole->way) > (2 * whole->by_nothing < whole->count ? least : (real)0.65) * count) continue;
+        const real count = (real)whole->count, agreed = 2 * whole->by_nothing < whole->count ? least : least_by_nothing;
+        if (!whole->vertices || sk_length(whole->way) > agreed * count) continue;
         const sk_vec3 away = sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
         whole->stuck = true;
         whole->way = sk_length(away) > (real)0.1 * touch->thickness ? away : (sk_vec3){whole->after, 0, 0};

@@ -16,11 +16,14 @@
  * other, nor between what is around them where surfaces are so fine that contact of neighbours does the same. Between all
  * others it is, so that what is pressed together does not fall through itself.
  *
+ * Of two solids it is known which end of an edge is inside: that behind the triangle, as its faces look.
+ *
  * Neighbours hold back who is led alone. So what crossings of two pieces say together leads these as wholes, too: solids out of each
  * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
  * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it. Where what the crossings of
  * two solids say adds up to little, they lead to all sides, and contact of all around holds both where they are: then there is none
- * between these two, and they go away from where they cross.
+ * between these two, and they go away from where they cross. Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
+ * later one is taken to be a little aside (sides.c), or no edge would go through anything.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
  * the places before a substep alone: a state that was saved and loaded goes on as it would have. */
