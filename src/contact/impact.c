@@ -21,6 +21,17 @@
 #include "base/union_find.h"
 #include "contact/touch.h"
 
+/* ---- momentum ---- */
+
+static void add_momentum(sk_whole *whole, double mass, sk_vec3 v) {
+    whole->mass += mass;
+    whole->momentum[0] += mass * (double)v.x, whole->momentum[1] += mass * (double)v.y, whole->momentum[2] += mass * (double)v.z;
+}
+
+static void gain(const sk_run *run, const sk_op *op, uint32_t slot, const double what[3], double share) {
+    sk_add_at(run->vector[SK_V], op->packed, slot, (sk_vec3){(real)(share * what[0]), (real)(share * what[1]), (real)(share * what[2])});
+}
+
 /* ---- who loses it ---- */
 
 /* What pieces of the skin lose of what they are held back by: nothing; what all lose together who are tangled in one group is given back to
@@ -92,9 +103,7 @@ static void give_back(sk_touch *touch, const sk_run *run, const sk_op *op) {
         const uint32_t piece = touch->skin.piece[v];
         const sk_whole *group = group_of(touch, piece);
         if (touch->loses[piece] != SHARES_LOSS || group->held) continue;
-        const double share = 1 / group->mass;
-        sk_add_at(run->vector[SK_V], op->packed, touch->slot[v],
-                  (sk_vec3){(real)(share * group->momentum[0]), (real)(share * group->momentum[1]), (real)(share * group->momentum[2])});
+        gain(run, op, touch->slot[v], group->momentum, 1 / group->mass);
     }
 }
 
@@ -108,28 +117,26 @@ void sk_touch_lose_velocities(sk_touch *touch, const sk_run *run, const sk_op *o
         const uint32_t piece = touch->skin.piece[v];
         const uint8_t loses = touch->loses[piece];
         if (loses == LOSES_NOTHING) continue;
-        const double mass = loses == SHARES_LOSS ? 1 / (double)touch->inverse[v] : 0;
-        sk_whole *group = loses == SHARES_LOSS ? group_of(touch, piece) : NULL;
-        if (group) group->mass += mass;
-        if (!(touch->share[v] < 1)) continue;
-        const size_t slot = touch->slot[v];
-        const sk_vec3 to = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot));
-        const sk_vec3 change = sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v])));
-        sk_add_at(run->vector[SK_V], op->packed, slot, change);
-        if (group) group->momentum[0] -= mass * (double)change.x, group->momentum[1] -= mass * (double)change.y, group->momentum[2] -= mass * (double)change.z;
+        sk_vec3 change = {0, 0, 0};
+        if (touch->share[v] < 1) {
+            const sk_vec3 to = sk_xyz(sk_load(run->vector[SK_X], op->packed, touch->slot[v]));
+            change = sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v])));
+            sk_add_at(run->vector[SK_V], op->packed, touch->slot[v], change);
+        }
+        if (loses == SHARES_LOSS) add_momentum(group_of(touch, piece), 1 / (double)touch->inverse[v], sk_scale(-1, change));
     }
     if (shared) give_back(touch, run, op);
 }
 
 /* ---- who is led apart ---- */
 
-/* Adds a particle of a solid that is led out of another one. */
-static void add_moving(sk_whole *whole, sk_vec4 x, sk_vec3 v) {
-    if (!(x.w > 0)) whole->held = true;
-    if (!whole->count || !(x.w > 0)) return;
-    const double mass = 1 / (double)x.w;
-    whole->mass += mass;
-    whole->momentum[0] += mass * (double)v.x, whole->momentum[1] += mass * (double)v.y, whole->momentum[2] += mass * (double)v.z;
+/* Of the vertices of the skin, and of who is within its solids, the piece and the slot. */
+static sk_whole *moving(const sk_touch *touch, size_t i, uint32_t *slot) {
+    const sk_skin *skin = &touch->skin;
+    const bool inner = i >= skin->vertex_count;
+    if (inner) i -= skin->vertex_count;
+    *slot = inner ? touch->inner_slot[i] : touch->slot[i];
+    return &touch->tangle.whole[inner ? skin->inner[i].piece : skin->piece[i]];
 }
 
 /* 1/kg; 0: somebody of it is pinned. */
@@ -157,25 +164,24 @@ static void part(sk_whole *one, sk_whole *other) {
     }
 }
 
-static void gain(const sk_run *run, const sk_op *op, const sk_whole *whole, uint32_t slot) {
-    if (!whole->count || !(sk_load(run->vector[SK_X], op->packed, slot).w > 0)) return;
-    sk_add_at(run->vector[SK_V], op->packed, slot, (sk_vec3){(real)whole->gained[0], (real)whole->gained[1], (real)whole->gained[2]});
-}
-
 /* Solids that are stuck have no contact, and what is led has no speed of it: so one above another fell as it was led up, faster and faster, until it was
  * through (two cubes of 1 m that began 0.4 m above each other had up to 499 J). */
 void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const sk_skin *skin = &touch->skin;
+    const size_t count = skin->vertex_count + skin->inner_count;
     sk_whole *whole = touch->tangle.whole;
+    uint32_t slot;
     for (size_t i = 0; i < skin->vertex_count; i++) {
         whole[i].held = false, whole[i].mass = 0;
-        for (int d = 0; d < 3; d++) whole[i].momentum[d] = whole[i].gained[d] = 0;
+        memset(whole[i].momentum, 0, sizeof whole[i].momentum), memset(whole[i].gained, 0, sizeof whole[i].gained);
     }
-    for (size_t v = 0; v < skin->vertex_count; v++)
-        add_moving(&whole[skin->piece[v]], sk_load(run->vector[SK_X], op->packed, touch->slot[v]), sk_xyz(sk_load(run->vector[SK_V], op->packed, touch->slot[v])));
-    for (size_t i = 0; i < skin->inner_count; i++)
-        add_moving(&whole[skin->inner[i].piece], sk_load(run->vector[SK_X], op->packed, touch->inner_slot[i]),
-                   sk_xyz(sk_load(run->vector[SK_V], op->packed, touch->inner_slot[i])));
+    for (size_t i = 0; i < count; i++) {
+        sk_whole *one = moving(touch, i, &slot);
+        const real inverse = sk_load(run->vector[SK_X], op->packed, slot).w;
+        const sk_vec4 v = sk_load(run->vector[SK_V], op->packed, slot);
+        one->held |= !(inverse > 0);
+        if (inverse > 0) add_momentum(one, 1 / (double)inverse, sk_xyz(v));
+    }
     bool any = false;
     for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
         const sk_crossing *crossing = &touch->tangle.crossing.data[i];
@@ -184,8 +190,10 @@ void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
         part(&whole[one], &whole[other]);
         any = true;
     }
-    for (size_t v = 0; v < skin->vertex_count && any; v++) gain(run, op, &whole[skin->piece[v]], touch->slot[v]);
-    for (size_t i = 0; i < skin->inner_count && any; i++) gain(run, op, &whole[skin->inner[i].piece], touch->inner_slot[i]);
+    for (size_t i = 0; i < count && any; i++) {
+        const sk_whole *one = moving(touch, i, &slot);
+        if (sk_load(run->vector[SK_X], op->packed, slot).w > 0) gain(run, op, slot, one->gained, 1);
+    }
 }
 
 /* ---- who shares it ---- */

@@ -185,10 +185,10 @@ static bool is_by_nothing(const sk_touch *touch, const uint32_t edge[2], const u
 }
 
 /* Notes of one of two solids whether the other one comes before it, and where they cross. */
-static void note_crossed(sk_touch *touch, uint32_t v, uint32_t other, const uint32_t edge[2], const uint32_t t[3]) {
+static void note_crossed(sk_touch *touch, uint32_t v, uint32_t other, const uint32_t edge[2], bool by_nothing) {
     sk_whole *whole = piece_of(touch, v);
     whole->after += touch->skin.piece[other] < touch->skin.piece[v] ? 1 : -1;
-    if (is_by_nothing(touch, edge, t)) whole->by_nothing++;
+    whole->by_nothing += by_nothing;
     whole->crossed = sk_add(whole->crossed, sk_scale(half, sk_add(sk_xyz(touch->p[edge[0]]), sk_xyz(touch->p[edge[1]]))));
 }
 
@@ -203,8 +203,9 @@ static void add_wholes(sk_touch *touch, const uint32_t edge[2], const uint32_t t
     }
     add_way(piece_of(touch, edge[0]), way, share);
     add_way(piece_of(touch, t[0]), sk_scale(-1, way), 1 - share);
-    note_crossed(touch, edge[0], t[0], edge, t);
-    note_crossed(touch, t[0], edge[0], edge, t);
+    const bool by_nothing = is_by_nothing(touch, edge, t);
+    note_crossed(touch, edge[0], t[0], edge, by_nothing);
+    note_crossed(touch, t[0], edge[0], edge, by_nothing);
 }
 
 /* Leads both features of a crossing apart by twice a step. */
