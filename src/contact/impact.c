@@ -38,7 +38,7 @@ static void gain(const sk_run *run, const sk_op *op, uint32_t slot, const double
  * all of them; or all of it, since somebody is pinned, or has yielded to a pin. */
 enum { LOSES_NOTHING, SHARES_LOSS, LOSES_ALL };
 
-/* Of pieces; of the first piece of a group its lost momentum, kg m/s, and the mass of who shares it. */
+/* The first piece of a group, which has what the group has lost, and the mass of who shares it. */
 static sk_whole *group_of(const sk_touch *touch, uint32_t piece) {
     return &touch->tangle.whole[sk_union_root(touch->tangle.group, piece)];
 }
@@ -197,7 +197,6 @@ void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
 }
 
 /* ---- who shares it ---- */
-
 
 /* How far a vertex has gone, less what all go together. */
 static sk_vec3 gone(const sk_touch *touch, size_t v) {

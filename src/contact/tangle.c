@@ -215,7 +215,7 @@ static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_
     add_cut_solid(touch, edge, t);
     inner_end inner = find_inner(touch, edge, t);
     if (inner == THEIRS) return;
-    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge, inner, t);
+    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge, (int)inner, t);
     const real share = share_of(touch->p, edge, t);
     add_wholes(touch, edge, third, faces, t, inner, way, share);
     way = sk_scale(2 * step, way);
