@@ -32,9 +32,9 @@ static sk_vec4 moved(sk_vec4 x, sk_vec3 by) {
     return (sk_vec4){x.x + by.x, x.y + by.y, x.z + by.z, x.w};
 }
 
-static bool crosses(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
+static bool crosses(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3], bool aside) {
     const sk_vec4 *x = touch->p, *a = &x[t[0]], *b = &x[t[1]], *c = &x[t[2]];
-    const sk_vec3 by = sk_touch_aside(touch, edge[0], t[0]);
+    const sk_vec3 by = aside ? sk_touch_aside(touch, edge[0], t[0]) : (sk_vec3){0, 0, 0};
     const sk_vec4 first = moved(x[edge[0]], by), second = moved(x[edge[1]], by), *p = &first, *q = &second;
     double one = volume(a, b, c, p), two = volume(a, b, c, q);
     if (!((one > 0 && two < 0) || (one < 0 && two > 0))) return false; // most
@@ -45,7 +45,7 @@ static bool crosses(const sk_touch *touch, const uint32_t edge[2], const uint32_
 }
 
 /* Of leaf a's edges and leaf b's triangles. */
-static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *list, size_t a, size_t b) {
+static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *list, size_t a, size_t b, bool aside) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *edges = &skin->leaf[a], *triangles = &skin->leaf[b];
     sk_touch_need_features(touch, a), sk_touch_need_features(touch, b);
@@ -53,7 +53,7 @@ static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *
         for (uint32_t t = triangles->first_triangle; t < triangles->first_triangle + triangles->triangles; t++) {
             if (have_corner(skin->edge[e], skin->triangle[t])) continue; // as around a leaf most have
             if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
-            if (!crosses(touch, skin->edge[e], skin->triangle[t])) continue;
+            if (!crosses(touch, skin->edge[e], skin->triangle[t], aside)) continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
             list->data[list->count++] = (sk_crossing){e, t};
         }
@@ -82,7 +82,7 @@ void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
     touch->tasks = NULL;
 }
 
-bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list) {
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list, bool aside) {
     list->count = 0;
     sk_touch_put_boxes(touch, 0);
     if (of) {
@@ -95,7 +95,7 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
     bool too_many, good = sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
     for (size_t i = 0; i < touch->partner.count && good; i++) {
         size_t a = touch->first.data[i], b = touch->partner.data[i];
-        good = list_of(touch, allocator, list, a, b) && (a == b || list_of(touch, allocator, list, b, a));
+        good = list_of(touch, allocator, list, a, b, aside) && (a == b || list_of(touch, allocator, list, b, a, aside));
     }
     return good;
 }
@@ -106,7 +106,7 @@ bool sk_touch_crossings(sk_force *force, sk_allocator *allocator, const sk_vec4 
     *count = 0;
     if (!touch || !touch->skin.leaf_count) return true;
     sk_touch_load_from(touch, x, slot_of);
-    bool good = sk_touch_list_crossings(touch, allocator, NULL, &touch->tangle.crossing);
+    bool good = sk_touch_list_crossings(touch, allocator, NULL, &touch->tangle.crossing, false);
     *count = touch->tangle.crossing.count;
     return good;
 }

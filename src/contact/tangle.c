@@ -429,7 +429,7 @@ bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, 
     sk_touch_load(touch, packed);
     sk_torn_know(touch, packed);
     const uint8_t *of = left || goes_on ? tangle->marked : NULL;
-    if (!sk_touch_list_crossings(touch, allocator, of, &tangle->crossing)) return false;
+    if (!sk_touch_list_crossings(touch, allocator, of, &tangle->crossing, true)) return false;
     if (tangle->crossing.count) lead_all(touch, step);
     return true;
 }

@@ -334,8 +334,9 @@ void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
  * meet there. Who is torn meets nobody: in a step, who was before it; else who is where they are. */
 void sk_touch_put_boxes(sk_touch *touch, real part);
 /* Lists those edges that go through a triangle where they are loaded, in the order of leaves; with `of`, if it is known
- * that of others none does, those around vertices that have it set. False when there is no memory. */
-bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list);
+ * that of others none does, those around vertices that have it set. `aside`: of two solids one is taken to be a little aside (sides.c), or those with faces
+ * in one plane would have none. False when there is no memory. */
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list, bool aside);
 
 /* ---- sides.c ---- */
 
