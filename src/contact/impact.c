@@ -164,12 +164,24 @@ static void part(sk_whole *one, sk_whole *other) {
     }
 }
 
+/* Whether a crossing is of two solids, and which. */
+static bool of_solids(const sk_touch *touch, size_t i, sk_whole *solid[2]) {
+    const sk_skin *skin = &touch->skin;
+    const sk_crossing *crossing = &touch->tangle.crossing.data[i];
+    const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
+    solid[0] = &touch->tangle.whole[one], solid[1] = &touch->tangle.whole[other];
+    return one != other && skin->closed[one] && skin->closed[other];
+}
+
 /* Solids that are stuck have no contact, and what is led has no speed of it: so one above another fell as it was led up, faster and faster, until it was
  * through (two cubes of 1 m that began 0.4 m above each other had up to 499 J). */
 void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const sk_skin *skin = &touch->skin;
-    const size_t count = skin->vertex_count + skin->inner_count;
-    sk_whole *whole = touch->tangle.whole;
+    const size_t count = skin->vertex_count + skin->inner_count, crossings = touch->tangle.crossing.count;
+    sk_whole *whole = touch->tangle.whole, *solid[2];
+    size_t first = 0;
+    while (first < crossings && !of_solids(touch, first, solid)) first++;
+    if (first == crossings) return;
     uint32_t slot;
     for (size_t i = 0; i < skin->vertex_count; i++) {
         whole[i].held = false, whole[i].mass = 0;
@@ -182,15 +194,9 @@ void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
         one->held |= !(inverse > 0);
         if (inverse > 0) add_momentum(one, 1 / (double)inverse, sk_xyz(v));
     }
-    bool any = false;
-    for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
-        const sk_crossing *crossing = &touch->tangle.crossing.data[i];
-        const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
-        if (one == other || !skin->closed[one] || !skin->closed[other]) continue;
-        part(&whole[one], &whole[other]);
-        any = true;
-    }
-    for (size_t i = 0; i < count && any; i++) {
+    for (size_t i = first; i < crossings; i++)
+        if (of_solids(touch, i, solid)) part(solid[0], solid[1]);
+    for (size_t i = 0; i < count; i++) {
         const sk_whole *one = moving(touch, i, &slot);
         if (sk_load(run->vector[SK_X], op->packed, slot).w > 0) gain(run, op, slot, one->gained, 1);
     }
