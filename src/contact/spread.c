@@ -374,6 +374,7 @@ static bool turn(sk_touch *touch) {
     for (size_t p = 0; p < spread->count; p++) {
         spread->out_count += spread->out[p];
         spread->went_out |= spread->out[p] && !spread->was_out[p];
+        spread->turned[p] |= spread->out[p] != spread->was_out[p];
         if (spread->out[p]) continue;
         mark_corners(touch, p, mark, spread->was_out[p] ? IN | CAME : IN);
         for (uint32_t i = spread->beside.start[p]; i < spread->beside.start[p + 1]; i++)
@@ -393,7 +394,6 @@ static bool turn(sk_touch *touch) {
         touch->lost_since = touch->skin.vertex_count;
     }
     turn_patches(touch);
-    spread->turned = true;
     touch->holds = false;
     return any;
 }

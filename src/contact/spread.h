@@ -68,7 +68,8 @@ typedef struct sk_spread {
     int wait;            /* or until that is tried again */
     bool off_course;     /* somebody is not */
     uint32_t *met;       /* and which of the tree's blocks one may meet */
-    uint8_t *was_out;    /* panels that were, when it was last said who is lost */
+    uint8_t *was_out;    /* panels that were, when it was last said who is lost; */
+    uint8_t *turned;     /* and those that have gone out or come in, which boxes of leaves do not know yet */
     uint8_t *mark;       /* of vertices: for a moment */
     real thickness;      /* that panels were looked at for */
     real holds, gone;    /* m: all that are out are while nobody has gone farther since; and how far they have gone at most */
@@ -78,7 +79,6 @@ typedef struct sk_spread {
     bool came_in;        /* panels have, and it has not been said yet who is lost */
     bool never;          /* nobody goes out: an implicit solve asks several times what becomes of a substep */
     bool eager;          /* few suffice to be out: tests ask for it */
-    bool turned;         /* somebody has gone out or come in, and boxes of leaves do not know it */
 } sk_spread;
 
 struct sk_touch;

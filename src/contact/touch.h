@@ -60,6 +60,9 @@ typedef struct sk_ring_mark {
     uint32_t block, lanes;
 } sk_ring_mark;
 
+/* A leaf's features have boxes, or are to have them; or it is out (spread.h), and has no box itself. */
+enum { SK_IS_FEATURED = 1, SK_TO_BE_FEATURED, SK_IS_OUT };
+
 /* What one thread finds of a search: all that is kept is put together in their order, so that no bit depends on them. */
 enum { SK_MOST_PARTS = 16 };
 typedef struct sk_search_part {
@@ -156,7 +159,7 @@ typedef struct sk_touch {
     uint64_t torn_clock;          /* the substep that it is known of */
     bool torn_asked, any_torn, torn_changed;
     uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
-    uint8_t *featured;            /* those whose features have boxes, too (2: are to have them) */
+    uint8_t *featured;            /* whether their features have boxes, too */
     bool everybody;               /* all features of all leaves are looked for */
     uint8_t *changed;             /* slots of a level of the tree, and of the next one */
     bool refit;                   /* all of the tree is old */

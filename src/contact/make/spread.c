@@ -76,6 +76,7 @@ static bool reserve_panels(making *m) {
     spread->least = sk_allocate(a, panels * sizeof *spread->least);
     spread->out = sk_allocate(a, panels);
     spread->was_out = sk_allocate(a, panels);
+    spread->turned = sk_allocate(a, panels);
     spread->box = sk_allocate(a, panels * sizeof *spread->box);
     spread->wide = sk_allocate(a, panels * sizeof *spread->wide);
     spread->age = SK_PANEL_AHEAD;
@@ -88,7 +89,7 @@ static bool reserve_panels(making *m) {
     m->longest = sk_allocate(a, panels * sizeof *m->longest);
     m->order = sk_allocate(a, panels * sizeof *m->order);
     bool good = sk_tree_reserve(&spread->tree, a, spread->count);
-    return good && spread->sixteen && spread->least && spread->out && spread->was_out && spread->box && spread->wide &&
+    return good && spread->sixteen && spread->least && spread->out && spread->was_out && spread->turned && spread->box && spread->wide &&
            spread->met && spread->beside.start && m->in_bin && m->apart && m->steep && m->of_panel && m->longest &&
            m->order;
 }
@@ -135,7 +136,7 @@ void sk_spread_release(sk_spread *spread, sk_allocator *allocator) {
         sk_release(allocator, lists[i]->start);
         sk_release(allocator, lists[i]->number);
     }
-    void *arrays[] = {spread->sixteen, spread->least, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->vertex_out, spread->patch_out,
+    void *arrays[] = {spread->sixteen, spread->least, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->turned, spread->vertex_out, spread->patch_out,
                       spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide,
                       spread->met};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);

@@ -88,7 +88,7 @@ void sk_touch_leaf_box(sk_touch *touch, size_t i, bool torn) {
 void sk_touch_feature_boxes(sk_touch *touch, size_t i) {
     const sk_skin *skin = &touch->skin;
     const sk_leaf *leaf = &skin->leaf[i];
-    touch->featured[i] = 1;
+    touch->featured[i] = SK_IS_FEATURED;
     for (uint32_t k = 0, v = leaf->first_vertex; k < leaf->vertices; k++, v++)
         box_of(touch->corner_box, &v, 1, &touch->vertex_box[v]);
     for (size_t k = 0, e = leaf->first_edge; k < leaf->edges; k++, e++)
@@ -121,8 +121,8 @@ static void make_leaf_boxes(void *data, int thread, size_t begin, size_t end) {
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++) {
         if (sk_spread_has(&touch->spread, i)) { // nobody meets it
-            touch->leaf_box[i] = touch->hot_box[i] = no_box();
-            touch->featured[i] = 0;
+            if (touch->moved[i]) touch->leaf_box[i] = touch->hot_box[i] = no_box();
+            if (touch->moved[i]) touch->featured[i] = SK_IS_OUT;
             continue;
         }
         if (touch->moved[i]) sk_touch_leaf_box(touch, i, touch->torn[i]);
@@ -139,7 +139,7 @@ static void make_features(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     sk_touch *touch = data;
     for (size_t i = begin; i < end; i++)
-        if (touch->featured[i] == 2) sk_touch_feature_boxes(touch, i), sk_touch_leaf_cells(touch, i);
+        if (touch->featured[i] == SK_TO_BE_FEATURED) sk_touch_feature_boxes(touch, i), sk_touch_leaf_cells(touch, i);
 }
 
 /* Threads may find the same leaf: all say the same of it. */
@@ -150,14 +150,14 @@ static void find_unfeatured(void *data, int thread, size_t begin, size_t end) {
     for (size_t i = begin; i < end; i++)
         for (int k = 0; k < 2; k++) {
             uint8_t *featured = &touch->featured[k ? partner[i] : first[i]];
-            if (!__atomic_load_n(featured, __ATOMIC_RELAXED)) __atomic_store_n(featured, 2, __ATOMIC_RELAXED);
+            if (!__atomic_load_n(featured, __ATOMIC_RELAXED)) __atomic_store_n(featured, SK_TO_BE_FEATURED, __ATOMIC_RELAXED);
         }
 }
 
 void sk_touch_box_features(sk_touch *touch) {
     enum { PARTNERS_AT_ONCE = 4096 };
     sk_parallel_pieces(touch->tasks, 0, touch->partner.count, PARTNERS_AT_ONCE, find_unfeatured, touch);
-    if (!memchr(touch->featured, 2, touch->skin.leaf_count)) return;
+    if (!memchr(touch->featured, SK_TO_BE_FEATURED, touch->skin.leaf_count)) return;
     sk_parallel_pieces(touch->tasks, 0, touch->skin.leaf_count, AT_ONCE, make_features, touch);
 }
 
@@ -179,14 +179,23 @@ static void box_some_vertices(void *data, int thread, size_t begin, size_t end) 
     }
 }
 
+/* Who has gone out since has no boxes any more, and who has come in has some again. */
+static void move_turned(sk_touch *touch) {
+    sk_spread *spread = &touch->spread;
+    for (size_t p = 0; p < spread->count; p++) {
+        for (uint32_t i = spread->leaves.start[p]; i < spread->leaves.start[p + 1] && spread->turned[p]; i++) touch->moved[spread->leaves.number[i]] = 1;
+        spread->turned[p] = 0;
+    }
+}
+
 void sk_touch_make_boxes(sk_touch *touch, sk_touch_search_sort sort) {
     bool all = sort == SK_SEARCH_ALL || !touch->boxed || touch->still;
     size_t leaves = touch->skin.leaf_count;
     if (all) touch->cells = sk_cells_a_metre(touch), touch->tangle.torn = false;
-    if (all) memset(touch->moved, 1, leaves);
+    if (all)
+        for (size_t i = 0; i < leaves; i++) touch->moved[i] = touch->featured[i] != SK_IS_OUT;
     else memcpy(touch->moved, touch->anew, leaves);
-    if (touch->spread.turned) memset(touch->moved, 1, leaves);
-    touch->spread.turned = false;
+    move_turned(touch);
     boxing job = {touch, all, sort == SK_SEARCH_WAYS, sort == SK_SEARCH_LOST};
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, AT_ONCE, box_some_vertices, &job);
     for (size_t v = 0; v < touch->skin.vertex_count && job.wild && touch->wild_count && !all; v++)

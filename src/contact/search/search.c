@@ -184,7 +184,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     sk_touch_mark_hot(touch);
     // for a whole substep and many vertices, smaller boxes that stand are worth making all anew
     touch->still = touch->tree.still = search == SK_SEARCH_WAYS && is_many(touch);
-    touch->refit |= all || touch->still || !touch->boxed;
+    touch->refit |= !touch->boxed;
     sk_touch_make_boxes(touch, search);
     touch->boxed = !touch->still;
     touch->found = false;
