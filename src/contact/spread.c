@@ -279,20 +279,18 @@ static void box_panels(sk_touch *touch, bool ways) {
 
 /* Puts all boxes into the tree. */
 static void fit(sk_spread *spread) {
+    const sk_quad nowhere = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0};
     sk_tree *tree = &spread->tree;
     for (int level = 0; level < tree->levels; level++)
         for (size_t b = 0; b < tree->blocks[level]; b++)
             for (size_t l = 0, i = b * SK_TREE_WIDTH; l < SK_TREE_WIDTH; l++, i++) {
                 sk_tree_block *block = &tree->block[level][b];
-                const sk_tree_block *below = level ? &tree->block[level - 1][i] : NULL;
                 const bool there = i < (level ? tree->blocks[level - 1] : spread->count);
+                sk_box box = {{nowhere, nowhere}, {-nowhere, -nowhere}};
+                if (there) box = level ? sk_box_around(&tree->block[level - 1][i]) : spread->wide[i];
                 for (int n = 0; n < 6; n++) {
                     const int end = n / 3, k = n % 3;
-                    real low = SK_REAL_MAX, high = -SK_REAL_MAX;
-                    if (there && !level) low = spread->wide[i].low[end][k], high = spread->wide[i].high[end][k];
-                    for (int m = 0; m < SK_TREE_WIDTH && there && level; m++)
-                        low = sk_min(low, below->low[end][k][m]), high = sk_max(high, below->high[end][k][m]);
-                    block->low[end][k][l] = low, block->high[end][k][l] = high;
+                    block->low[end][k][l] = box.low[end][k], block->high[end][k][l] = box.high[end][k];
                 }
             }
 }

@@ -81,6 +81,22 @@ enum { SK_TREE_LEVELS = 9, SK_TREE_SHIFT = 4, SK_TREE_WIDTH = 1 << SK_TREE_SHIFT
 typedef struct sk_tree_block {
     _Alignas(64) real low[2][3][SK_TREE_WIDTH], high[2][3][SK_TREE_WIDTH];
 } sk_tree_block;
+/* The box around a block's boxes. */
+static inline sk_box sk_box_around(const sk_tree_block *block) {
+    sk_box box = {{{0}}, {{0}}};
+    for (int end = 0; end < 2; end++)
+        for (int k = 0; k < 3; k++) {
+            sk_quad low[4], high[4];
+            memcpy(low, block->low[end][k], sizeof low);
+            memcpy(high, block->high[end][k], sizeof high);
+            const sk_quad least = sk_least_quad(sk_least_quad(low[0], low[1]), sk_least_quad(low[2], low[3]));
+            const sk_quad most = sk_most_quad(sk_most_quad(high[0], high[1]), sk_most_quad(high[2], high[3]));
+            box.low[end][k] = sk_min(sk_min(least[0], least[1]), sk_min(least[2], least[3]));
+            box.high[end][k] = sk_max(sk_max(most[0], most[1]), sk_max(most[2], most[3]));
+        }
+    return box;
+}
+
 typedef struct sk_tree {
     sk_tree_block *block[SK_TREE_LEVELS];
     size_t blocks[SK_TREE_LEVELS]; /* of each level; the last one has one */

@@ -15,21 +15,6 @@ static void put_box(sk_tree_block *block, size_t lane, const sk_box *box) {
         }
 }
 
-/* The box around a block's boxes. */
-static sk_box box_around(const sk_tree_block *block) {
-    sk_box box;
-    for (int end = 0; end < 2; end++)
-        for (int k = 0; k < 3; k++) {
-            real low = SK_REAL_MAX, high = -SK_REAL_MAX;
-            for (int l = 0; l < SK_TREE_WIDTH; l++) {
-                low = sk_min(low, block->low[end][k][l]);
-                high = sk_max(high, block->high[end][k][l]);
-            }
-            box.low[end][k] = low, box.high[end][k] = high;
-        }
-    return box;
-}
-
 /* A level of the tree, and of how many slots it is: leaves, or blocks of the level below. */
 typedef struct fitting {
     sk_touch *touch;
@@ -52,7 +37,7 @@ static bool fit_block(const fitting *job, size_t b) {
     for (size_t l = 0, i = first; l < SK_TREE_WIDTH; l++, i++) {
         if (i < job->count && !job->changed[i]) continue;
         if (i >= job->count && !touch->refit) continue;
-        sk_box below = level && i < job->count ? box_around(&tree->block[level - 1][i]) : nothing;
+        sk_box below = level && i < job->count ? sk_box_around(&tree->block[level - 1][i]) : nothing;
         put_box(&tree->block[level][b], l, level || i >= job->count ? &below : &touch->leaf_box[tree->leaf_at[i]]);
         any = true;
     }
