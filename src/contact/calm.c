@@ -214,20 +214,28 @@ static sk_pairs pairs_of(const sk_calm *calm, size_t p, int sort, int thread) {
     return pairs;
 }
 
+static real least_of(sk_quad a) {
+    return sk_min(sk_min(a[0], a[1]), sk_min(a[2], a[3]));
+}
+
 /* Looks at all distances; they hold from there on, if the patch is calm: if it has so much room, a share of the thickness. */
 static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, real room, int thread) {
     sk_calm *calm = &touch->calm;
     sk_calm_patch *patch = &calm->patch[p];
-    real slack = SK_REAL_MAX, nearest = SK_REAL_MAX;
+    const sk_quad far = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX};
+    sk_quad slacks = far, distances = far;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         sk_pairs pairs = pairs_of(calm, p, sort, thread);
         sk_closest[sort][touch->isa](x, &pairs);
-        for (size_t k = 0; k < pairs.count; k++) {
-            slack = sk_min(slack, pairs.distance[k] - SK_NEAR_THICKNESSES * pairs.thickness[k]);
-            nearest = sk_min(nearest, pairs.distance[k]);
+        for (size_t k = 0; k < pairs.count; k += 4) { // blocks are full
+            sk_quad distance, thickness;
+            memcpy(&distance, pairs.distance + k, sizeof distance);
+            memcpy(&thickness, pairs.thickness + k, sizeof thickness);
+            slacks = sk_least_quad(slacks, distance - sk_quad_times(SK_NEAR_THICKNESSES, thickness));
+            distances = sk_least_quad(distances, distance);
         }
     }
-    slack -= rounding * touch->thickness;
+    const real slack = least_of(slacks) - rounding * touch->thickness, nearest = least_of(distances);
     // (what is no number is not calm)
     patch->calm = slack > room * touch->thickness && nearest < SK_REAL_MAX;
     if (!patch->calm) return false;
