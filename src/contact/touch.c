@@ -24,16 +24,24 @@ static sk_touch *touch_of(const sk_op *op) {
     return ((const sk_force *)op->rule)->state;
 }
 
-/* What is fast is seldom as steady, and what is slow needs little room; `speed` is that of a substep, in the frame. A heap trembles by some ways
- * that gravity makes of a substep, however thin it is: silk of 65 x 65, whose edges are 80 thicknesses long, lost nearly everybody in each substep,
- * and took 76 ms a frame at rest where it takes 40 so (with 10 substeps instead of 40: 47; twice the share of edges: 40); what is as
- * thick as the default takes as long as it did. */
+/* How much of a thickness courses have room for. */
+static real roomy_share(const sk_touch *touch) {
+    const real room = (real)0.45 * touch->skin.spacing - (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
+    return touch->untouched && room > (real)0.5 * touch->thickness ? (real)0.5 : (real)0.25; // its own features stay out of reach
+}
+
+/* A heap trembles by some ways that gravity makes of a substep, however thin it is: silk of 65 x 65, whose edges are 80 thicknesses long, lost
+ * nearly everybody in each substep, and took 76 ms a frame at rest where it takes 40 so (with 10 substeps of such ways instead of 40: 47; twice the
+ * share of edges: 40); what is as thick as the default takes as long as it did. */
+static real most_reach(const sk_touch *touch) {
+    const real of_edges = (real)0.08;
+    return sk_max(roomy_share(touch) * touch->thickness, of_edges * touch->skin.spacing);
+}
+
+/* What is fast is seldom as steady, and what is slow needs little room; `speed` is that of a substep, in the frame. */
 static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real speed, real time) {
-    const real least = (real)0.125, substeps = 40, of_edges = (real)0.08;
-    real share = (real)0.25, room = (real)0.45 * touch->skin.spacing - (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
-    if (touch->untouched && room > (real)0.5 * touch->thickness) share = (real)0.5; // its own features stay out of reach
-    const real most = sk_max(share * touch->thickness, of_edges * touch->skin.spacing);
-    const real reach = sk_max(sk_min(most, least * touch->thickness + substeps * speed), share * speed);
+    const real least = (real)0.125, substeps = 40;
+    const real reach = sk_max(sk_min(most_reach(touch), least * touch->thickness + substeps * speed), roomy_share(touch) * speed);
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
 }
 
@@ -240,6 +248,23 @@ static bool knows_other_torn(sk_touch *touch, const sk_op *op) {
     return changed;
 }
 
+/* Whether vertices go so fast against each other, in the mean, that they leave any courses within some substeps. */
+static bool is_wild(const sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const real share = 1 / (real)touch->skin.vertex_count;
+    sk_vec3 drift = {0, 0, 0};
+    real speed = 0;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) drift = sk_add(drift, sk_scale(share, step_of(touch, run, op, v)));
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) speed += share * sk_length(sk_sub(step_of(touch, run, op, v), drift));
+    return speed > (real)0.8 * most_reach(touch);
+}
+
+/* A storm that is over goes on where things are still wild: trying courses in the midst of an impact took as long as five substeps of it, and made
+ * its worst frame half as long again. Returns whether it goes on. */
+static bool goes_on(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    if (touch->storm == 1 && is_wild(touch, run, op)) touch->storm += touch->next_storm;
+    return --touch->storm > 0;
+}
+
 /* In a storm, pairs are those that the last bound has found, on everybody's ways; or of where all are now. */
 static bool find_pairs_in_storm(sk_touch *touch, const sk_run *run, const sk_op *op, bool known) {
     sk_touch_load(touch, op->packed);
@@ -264,7 +289,7 @@ static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
-    if (stormed && !all && --touch->storm)
+    if (stormed && !all && goes_on(touch, run, op))
         return find_pairs_in_storm(touch, run, op, is_known(touch, run));
     touch->storm = 0;
     all |= stormed;
