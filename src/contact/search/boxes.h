@@ -10,7 +10,7 @@
 #include <wasm_simd128.h>
 #define SK_QUADS_OF_WASM
 #elif defined(__SSE__) && !defined(SKEIN_DOUBLE)
-#include <xmmintrin.h>
+#include <immintrin.h>
 #define SK_QUADS_OF_SSE
 #endif
 typedef sk_lane_int sk_quad_lanes __attribute__((vector_size(4 * sizeof(real))));
