@@ -147,6 +147,42 @@ static void what_is_stuck_comes_apart(void **state) {
     }
 }
 
+/* As somebody stacks them who takes them for smaller than they are, in either order: they go up, by the shortest way, and stand. Led along the diagonal
+ * between the faces that are in one plane, the upper ones fell beside the lower ones, with up to 100 J; and where one had come out of another but for
+ * less than it is taken to be aside, it was held there. */
+static void what_is_stacked_too_closely_stands(void **state) {
+    (void)state;
+    static const struct {
+        const char *method;
+        int substeps, count, side, first_is_upper;
+        double overlap, aside; // m, of cubes of 1 m
+    } cases[] = {{"xpbd", 10, 2, 5, 0, 0.1, 0},  {"xpbd", 10, 2, 5, 1, 0.4, 0},  {"xpbd", 10, 2, 8, 0, 0.1, 0.1},         {"xpbd", 10, 3, 4, 0, 0.05, 0},
+                 {"xpbd", 10, 3, 5, 1, 0.15, 0}, {"pbd", 10, 2, 5, 0, 0.2, 0.1}, {"symplectic_euler", 40, 2, 5, 0, 0.1, 0.1}, {"backward_euler", 4, 2, 5, 0, 0.1, 0}};
+    for (size_t c = 0; c < COUNT(cases); c++) {
+        skein_world *world = new_world(cases[c].method, cases[c].substeps);
+        add_gravity(world);
+        OK(world, skein_force_add(world, "contact", NULL, NULL));
+        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+        for (int b = 0; b < cases[c].count; b++) {
+            const int floor = cases[c].first_is_upper ? cases[c].count - 1 - b : b;
+            OK(world, skein_body_add(world, "lattice", NULL,
+                                     SKEIN_SETTINGS(SKEIN_VEC3("grid", cases[c].side, cases[c].side, cases[c].side),
+                                                    SKEIN_VEC3("position", floor * cases[c].aside, 0.505 + floor * (1 - cases[c].overlap), 0)),
+                                     NULL));
+        }
+        double most = 0, highest = 0;
+        for (int frame = 0; frame < 150; frame++) {
+            steps(world, 1, 1.0 / 60);
+            most = fmax(most, statistics_of(world).kinetic_energy);
+        }
+        for (size_t i = 0; i < skein_particle_count(world); i++) highest = fmax(highest, position_of(world, i).y);
+        if (crossings_of(world)) fail_msg("case %zu: %zu crossings", c, crossings_of(world));
+        if (!(highest > cases[c].count - 0.1)) fail_msg("case %zu: %g m high", c, highest);
+        if (!(most < 30)) fail_msg("case %zu: %g J", c, most);
+        skein_world_destroy(world);
+    }
+}
+
 /* One right on top of the other, whichever comes first: nothing is between them, and each goes out of the other. Rounding said who was on which side,
  * and they had 5 to 47 J, for good. */
 static void who_stands_on_another_comes_to_rest(void **state) {
@@ -206,6 +242,6 @@ int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(cubes_come_apart), cmocka_unit_test(fine_cubes_come_apart),
                                        cmocka_unit_test(so_they_do_under_other_methods), cmocka_unit_test(what_cannot_come_apart_does_not_fly),
                                        cmocka_unit_test(what_is_stuck_comes_apart),  cmocka_unit_test(who_stands_on_another_comes_to_rest),
-                                       cmocka_unit_test(a_sheet_in_a_face_is_outside)};
+                                       cmocka_unit_test(a_sheet_in_a_face_is_outside), cmocka_unit_test(what_is_stacked_too_closely_stands)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -53,7 +53,8 @@ static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *
         for (uint32_t t = triangles->first_triangle; t < triangles->first_triangle + triangles->triangles; t++) {
             if (have_corner(skin->edge[e], skin->triangle[t])) continue; // as around a leaf most have
             if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
-            if (!crosses(touch, skin->edge[e], skin->triangle[t], aside)) continue;
+            // (what is in the other by less than it is taken to be aside would be held there)
+            if (!crosses(touch, skin->edge[e], skin->triangle[t], false) && !(aside && crosses(touch, skin->edge[e], skin->triangle[t], true))) continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
             list->data[list->count++] = (sk_crossing){e, t};
         }

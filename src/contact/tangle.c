@@ -317,7 +317,7 @@ static real share_at(const sk_whole *whole, sk_vec4 built) {
  * contact of what is around these holds the two. */
 static void find_stuck(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
-    const real least = (real)0.5, least_by_nothing = (real)0.65;
+    const real least = (real)0.5, least_by_nothing = (real)0.65, most = (real)0.8;
     for (uint32_t v = 0; v < skin->vertex_count; v++) {
         sk_whole *whole = piece_of(touch, v);
         if (!whole->count || !is_solid(skin, v)) continue;
@@ -327,7 +327,9 @@ static void find_stuck(sk_touch *touch) {
     for (uint32_t i = 0; i < skin->vertex_count; i++) {
         sk_whole *whole = &touch->tangle.whole[i];
         const real count = (real)whole->count, agreed = 2 * whole->by_nothing < whole->count ? least : least_by_nothing;
-        if (!whole->vertices || sk_length(whole->way) > agreed * count) continue;
+        if (!whole->vertices || sk_length(whole->way) > most * count) continue;
+        whole->stuck = sk_tangle_way_out(touch, i, &whole->way);
+        if (whole->stuck || sk_length(whole->way) > agreed * count) continue;
         const sk_vec3 away = sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
         whole->stuck = true;
         whole->way = sk_length(away) > (real)0.1 * touch->thickness ? away : (sk_vec3){whole->after, 0, 0};

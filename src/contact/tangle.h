@@ -22,7 +22,7 @@
  * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
  * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it. Where what the crossings of
  * two solids say adds up to little, they lead to all sides, and contact of all around holds both where they are: then there is none
- * between these two, and they go away from where they cross. Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
+ * between these two, and they go away from where they cross, or by the shortest way that one of their faces looks along (way_out.c). Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
  * later one is taken to be a little aside (sides.c), or no edge would go through anything.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on

@@ -236,6 +236,12 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
 /* Whether a pair is of what is around an edge and what is around a triangle that go through each other (tangle.h). */
 bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sort);
 
+/* ---- way_out.c ---- */
+
+/* Turns the way that a solid's crossings lead it to the shortest ones out of other solids that it crosses, where these are much shorter; returns whether
+ * it did. */
+bool sk_tangle_way_out(const sk_touch *touch, uint32_t one, sk_vec3 *way);
+
 /* ---- kept.c ---- */
 
 /* Takes fresh pairs over: instead of all that are kept, or of those with a vertex that was looked for. In the midst of a
