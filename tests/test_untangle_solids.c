@@ -125,7 +125,7 @@ static void what_is_stuck_comes_apart(void **state) {
         int side, count;
     } cases[] = {{"xpbd", 10, 0.03, 0.8, 0, 8, 2}, {"xpbd", 10, 0.03, 0.3, 0, 8, 2}, {"xpbd", 10, 0, 0.5, 0, 8, 2}, {"xpbd", 10, 0.1, 0.5, 20, 5, 2},
                  {"xpbd", 10, 0.1, 0.5, 0, 6, 4},  {"xpbd", 10, 0.2, 0.4, 0, 5, 4},  {"xpbd", 10, 0, 0, 0, 8, 2},   {"xpbd", 10, 0, 0.8, 0, 6, 3},
-                 {"pbd", 10, 0, 0, 0, 5, 3},       {"symplectic_euler", 40, 0, 0, 0, 6, 2},                         {"backward_euler", 4, 0, 0.4, 0, 6, 2}};
+                 {"pbd", 10, 0, 0, 0, 5, 3},       {"symplectic_euler", 40, 0, 0, 0, 6, 2},                         {"backward_euler", 4, 0, 0.4, 0, 4, 2}};
     for (size_t c = 0; c < COUNT(cases); c++) {
         skein_world *world = new_world(cases[c].method, cases[c].substeps);
         add_gravity(world);
@@ -156,8 +156,8 @@ static void what_is_stacked_too_closely_stands(void **state) {
         const char *method;
         int substeps, count, side, first_is_upper;
         double overlap, aside; // m, of cubes of 1 m
-    } cases[] = {{"xpbd", 10, 2, 5, 0, 0.1, 0},  {"xpbd", 10, 2, 5, 1, 0.4, 0},  {"xpbd", 10, 2, 8, 0, 0.1, 0.1},         {"xpbd", 10, 3, 4, 0, 0.05, 0},
-                 {"xpbd", 10, 3, 5, 1, 0.15, 0}, {"pbd", 10, 2, 5, 0, 0.2, 0.1}, {"symplectic_euler", 40, 2, 5, 0, 0.1, 0.1}, {"backward_euler", 4, 2, 5, 0, 0.1, 0}};
+    } cases[] = {{"xpbd", 10, 2, 5, 0, 0.1, 0}, {"xpbd", 10, 2, 4, 1, 0.4, 0},   {"xpbd", 10, 2, 5, 0, 0.1, 0.1},             {"xpbd", 10, 3, 4, 1, 0.15, 0},
+                 {"pbd", 10, 2, 4, 0, 0.2, 0.1}, {"symplectic_euler", 40, 2, 4, 0, 0.1, 0.1}, {"backward_euler", 4, 2, 4, 0, 0.1, 0}};
     for (size_t c = 0; c < COUNT(cases); c++) {
         skein_world *world = new_world(cases[c].method, cases[c].substeps);
         add_gravity(world);
@@ -171,7 +171,7 @@ static void what_is_stacked_too_closely_stands(void **state) {
                                      NULL));
         }
         double most = 0, highest = 0;
-        for (int frame = 0; frame < 150; frame++) {
+        for (int frame = 0; frame < 100; frame++) {
             steps(world, 1, 1.0 / 60);
             most = fmax(most, statistics_of(world).kinetic_energy);
         }
