@@ -322,8 +322,7 @@ static void find_stuck(sk_touch *touch) {
         sk_whole *whole = piece_of(touch, v);
         if (!whole->count || !is_solid(skin, v)) continue;
         whole->middle = sk_add(whole->middle, sk_xyz(touch->p[v]));
-        if (!whole->vertices++) whole->first = v;
-        whole->end = v + 1;
+        whole->vertices++;
     }
     for (uint32_t i = 0; i < skin->vertex_count; i++) {
         sk_whole *whole = &touch->tangle.whole[i];

@@ -54,8 +54,7 @@ typedef struct sk_whole {
     real share;        /* the sum of how much of the way is its own, */
     uint32_t count;    /* of so many crossings */
     bool stuck;        /* a solid whose crossings lead to all sides: contact with others that go through something leaves it alone */
-    uint32_t vertices; /* of a solid; all of them are from this one on, and before that; */
-    uint32_t first, end;
+    uint32_t vertices; /* of a solid; */
     sk_vec3 middle;    /* the sum of their places, m, */
     sk_vec3 crossed;   /* and of those where it is gone through; */
     uint32_t by_nothing; /* of crossings: how many there are since it has faces in one plane with another one; */

@@ -8,18 +8,18 @@
 
 enum { MOST_DIRECTIONS = 8, MOST_OTHERS = 8 };
 
-/* How far a piece reaches along d. */
-static real reach_along(const sk_touch *touch, uint32_t piece, sk_vec3 d) {
-    const sk_whole *whole = &touch->tangle.whole[piece];
-    real most = -SK_REAL_MAX;
-    for (uint32_t v = whole->first; v < whole->end; v++)
-        if (touch->skin.piece[v] == piece) most = sk_max(most, sk_dot(d, sk_xyz(touch->p[v])));
-    return most;
-}
-
 /* How far one piece has to go along d to be out of another one, m. */
 static real way_along(const sk_touch *touch, uint32_t one, uint32_t other, sk_vec3 d) {
-    return reach_along(touch, other, d) + reach_along(touch, one, sk_scale(-1, d));
+    const sk_skin *skin = &touch->skin;
+    real least = SK_REAL_MAX, most = -SK_REAL_MAX;
+    for (size_t v = 0, left = touch->tangle.whole[one].vertices + touch->tangle.whole[other].vertices; left; v++) {
+        if (skin->piece[v] != one && skin->piece[v] != other) continue;
+        const real at = sk_dot(d, sk_xyz(touch->p[v]));
+        if (skin->piece[v] == one) least = sk_min(least, at);
+        else most = sk_max(most, at);
+        left--;
+    }
+    return most - least;
 }
 
 /* The pieces of a crossing's edge and triangle. */
