@@ -77,7 +77,7 @@ static uint32_t other_of(const sk_touch *touch, size_t i, uint32_t one) {
     pieces_of(touch, i, piece);
     if (piece[0] != one && piece[1] != one) return one;
     const uint32_t other = piece[piece[0] == one];
-    return touch->skin.closed[other] ? other : one;
+    return touch->tangle.whole[other].vertices ? other : one; // none: bare edges alone cross, which are sewn to it
 }
 
 /* The shortest way out of another one, where that is short against what crossings say, `way`; else none. */
