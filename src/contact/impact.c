@@ -28,6 +28,15 @@ static void add_momentum(sk_whole *whole, double mass, sk_vec3 v) {
     whole->momentum[0] += mass * (double)v.x, whole->momentum[1] += mass * (double)v.y, whole->momentum[2] += mass * (double)v.z;
 }
 
+/* Of all pieces, and of groups. */
+static void forget_momenta(sk_touch *touch) {
+    for (size_t i = 0; i < touch->skin.vertex_count; i++) {
+        sk_whole *whole = &touch->tangle.whole[i];
+        whole->held = false, whole->mass = 0;
+        memset(whole->momentum, 0, sizeof whole->momentum), memset(whole->gained, 0, sizeof whole->gained);
+    }
+}
+
 static void gain(const sk_run *run, const sk_op *op, uint32_t slot, const double what[3], double share) {
     sk_add_at(run->vector[SK_V], op->packed, slot, (sk_vec3){(real)(share * what[0]), (real)(share * what[1]), (real)(share * what[2])});
 }
@@ -47,11 +56,9 @@ static sk_whole *group_of(const sk_touch *touch, uint32_t piece) {
 static bool find_tangled(sk_touch *touch) {
     const sk_skin *skin = &touch->skin;
     bool any = false;
-    for (uint32_t i = 0; i < skin->vertex_count; i++) touch->tangle.group[i] = i;
     for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
         const sk_crossing *crossing = &touch->tangle.crossing.data[i];
         const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
-        sk_union_join(touch->tangle.group, one, other);
         if (skin->closed[one] && skin->closed[other]) continue;
         touch->loses[one] = touch->loses[other] = SHARES_LOSS;
         any = true;
@@ -178,14 +185,15 @@ static bool of_solids(const sk_touch *touch, size_t i, sk_whole *solid[2]) {
 void sk_touch_part_solids(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const sk_skin *skin = &touch->skin;
     const size_t count = skin->vertex_count + skin->inner_count, crossings = touch->tangle.crossing.count;
-    sk_whole *whole = touch->tangle.whole, *solid[2];
+    sk_whole *solid[2];
     size_t first = 0;
     while (first < crossings && !of_solids(touch, first, solid)) first++;
     if (first == crossings) return;
     uint32_t slot;
     for (size_t i = 0; i < skin->vertex_count; i++) {
-        whole[i].held = false, whole[i].mass = 0;
-        memset(whole[i].momentum, 0, sizeof whole[i].momentum), memset(whole[i].gained, 0, sizeof whole[i].gained);
+        sk_whole *whole = &touch->tangle.whole[i];
+        whole->held = false, whole->mass = 0;
+        memset(whole->momentum, 0, sizeof whole->momentum), memset(whole->gained, 0, sizeof whole->gained);
     }
     for (size_t i = 0; i < count; i++) {
         sk_whole *one = moving(touch, i, &slot);
@@ -209,6 +217,9 @@ static sk_vec3 gone(const sk_touch *touch, size_t v) {
     return sk_add(sk_sub(sk_xyz(touch->stand[v]), sk_xyz(touch->p[v])), sk_way_left(touch, v));
 }
 
+/* What is too small to be shared, thicknesses a substep. */
+static const real least = (real)0.5;
+
 /* Of corners [first, end) the one that would lie farthest along n. */
 static int farthest(const sk_touch *touch, const uint32_t v[4], int first, int end, sk_vec3 n) {
     int best = first;
@@ -221,7 +232,6 @@ static int farthest(const sk_touch *touch, const uint32_t v[4], int first, int e
 }
 
 static void share_in_pair(const sk_touch *touch, const sk_run *run, const sk_op *op, int sort, const sk_divided *pair) {
-    const real least = (real)0.5; // thicknesses a substep
     const uint32_t *v = pair->corner;
     const sk_vec3 n = pair->normal;
     const int second = sort == SK_EDGES ? 2 : 1;
@@ -239,6 +249,41 @@ static void share_in_pair(const sk_touch *touch, const sk_run *run, const sk_op 
     sk_add_at(velocity, op->packed, slot[1], sk_scale(-gives[1], blow));
 }
 
+/* What a vertex' velocity has too much of who is held back; 0 where that is little. */
+static sk_vec3 excess_of(const sk_touch *touch, const sk_run *run, const sk_op *op, size_t v) {
+    const real rate = (real)(1 / op->dt);
+    const sk_vec3 none = {0, 0, 0};
+    if (!(touch->share[v] < 1) || !(touch->inverse[v] > 0)) return none;
+    const sk_vec3 went = sk_scale(rate, sk_add(gone(touch, v), touch->common));
+    const sk_vec3 excess = sk_sub(sk_xyz(sk_load(run->vector[SK_V], op->packed, touch->slot[v])), went);
+    return sk_length(excess) > least * touch->thickness * rate ? excess : none;
+}
+
+/* Who is held back where he is, and pulled at by springs all the same, gets faster and faster, for pairs take only what brings their features
+ * together, once each, and springs lose nothing while nobody moves. So who has more than that gives a part of it to all of his group, the larger the more he
+ * has, and what holds the group up takes its share. (Of 160 sacks of cloth in each other, with boxes in and on them, 3 had 1,200 to 6,500 J after 8 s;
+ * now 53 at most. Where all of it was lost to nobody, a box on a sack drove off by that.) */
+static void lose_excess(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    const real lost = (real)0.01, most = (real)0.1, rate = (real)(1 / op->dt); // of what is a thickness a substep; at most
+    const size_t count = touch->skin.vertex_count;
+    bool any = false;
+    for (size_t v = 0; v < count && !any; v++) any = sk_length(excess_of(touch, run, op, v)) > 0;
+    if (!any) return;
+    for (uint32_t i = 0; i < count && !touch->tangle.any; i++) touch->tangle.group[i] = i; // or crossings have joined it
+    join_divided(touch);
+    forget_momenta(touch);
+    memset(touch->loses, SHARES_LOSS, count);
+    for (size_t v = 0; v < count; v++) {
+        sk_whole *group = group_of(touch, touch->skin.piece[v]);
+        const sk_vec3 all = excess_of(touch, run, op, v);
+        const sk_vec3 excess = sk_scale(sk_min(most, lost * sk_length(all) / (touch->thickness * rate)), all);
+        if (touch->inverse[v] > 0) add_momentum(group, 1 / (double)touch->inverse[v], excess);
+        else group->held = true;
+        sk_add_at(run->vector[SK_V], op->packed, touch->slot[v], sk_scale(-1, excess));
+    }
+    give_back(touch, run, op);
+}
+
 bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const sk_run *run, const sk_op *op) {
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) {
         const sk_divided_list *list = &touch->divided[sort];
@@ -247,5 +292,7 @@ bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const s
         for (size_t i = 0; i < list->count; i++)
             if (!i || place[i].key != place[i - 1].key) share_in_pair(touch, run, op, sort, &list->data[place[i].at]);
     }
+    if (!sk_tangle_reserve(touch, allocator)) return false;
+    lose_excess(touch, run, op);
     return true;
 }

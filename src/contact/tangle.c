@@ -265,7 +265,7 @@ bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sor
 
 /* ---- before a substep, in it and after it ---- */
 
-static bool reserve(sk_touch *touch, sk_allocator *allocator) {
+bool sk_tangle_reserve(sk_touch *touch, sk_allocator *allocator) {
     sk_tangle *tangle = &touch->tangle;
     size_t vertices = touch->skin.vertex_count + 1;
     if (tangle->cut) return true;
@@ -309,6 +309,20 @@ static real share_at(const sk_whole *whole, sk_vec4 built) {
     return sk_max(0, 1 - sk_length(off) / wide);
 }
 
+/* Who goes through each other is of one group. */
+static void find_groups(sk_touch *touch) {
+    const sk_skin *skin = &touch->skin;
+    sk_tangle *tangle = &touch->tangle;
+    for (uint32_t i = 0; i < skin->vertex_count; i++) tangle->group[i] = i;
+    for (size_t i = 0; i < tangle->crossing.count; i++) {
+        const sk_crossing *crossing = &tangle->crossing.data[i];
+        sk_union_join(tangle->group, skin->piece[skin->edge[crossing->edge][0]], skin->piece[skin->triangle[crossing->triangle][0]]);
+    }
+    for (size_t i = 0; i < skin->inner_count; i++) tangle->whole[skin->inner[i].piece].filled = true;
+    for (uint32_t v = 0; v < skin->vertex_count; v++)
+        if (!piece_of(touch, v)->filled) tangle->whole[sk_union_root(tangle->group, skin->piece[v])].hollow = true;
+}
+
 /* Finds solids whose crossings lead to all sides; they go away from where these are in the mean, or, if that is nowhere, along x. Two cubes of 1 m
  * and 8 particles a side, 0.8 m above each other, beside each other by 3 cm or not at all, drove over the ground together for ever, with 22 to 30 J, for
  * their ways added up to 0.05 of what they were, and faces in one plane held each other; turned, and half in each other, with 5 a side, they had
@@ -328,7 +342,8 @@ static void find_stuck(sk_touch *touch) {
         sk_whole *whole = &touch->tangle.whole[i];
         const real count = (real)whole->count, agreed = 2 * whole->by_nothing < whole->count ? least : least_by_nothing;
         if (!whole->vertices || sk_length(whole->way) > most * count) continue;
-        whole->stuck = sk_tangle_way_out(touch, i, &whole->way);
+        const bool hollow = touch->tangle.whole[sk_union_root(touch->tangle.group, i)].hollow;
+        whole->stuck = !hollow && sk_tangle_way_out(touch, i, &whole->way);
         if (whole->stuck || sk_length(whole->way) > agreed * count) continue;
         const sk_vec3 away = sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
         whole->stuck = true;
@@ -343,6 +358,7 @@ static void lead_wholes(sk_touch *touch, real step) {
     const sk_skin *skin = &touch->skin;
     for (uint32_t v = 0; v < skin->vertex_count; v++)
         if (!(touch->p[v].w > 0) && !is_solid(skin, v)) piece_of(touch, v)->pinned = true;
+    find_groups(touch);
     find_stuck(touch);
     for (uint32_t i = 0; i < 2 * skin->vertex_count; i++) {
         sk_whole *whole = &tangle->whole[i];
@@ -425,7 +441,7 @@ bool sk_tangle_look(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, 
     tangle->any = tangle->forced = false;
     tangle->same = tangle->clean && (known || (left && !memcmp(tangle->left, x, touch->slots * sizeof *x)));
     if (tangle->same) return true;
-    if (!reserve(touch, allocator)) return false;
+    if (!sk_tangle_reserve(touch, allocator)) return false;
     if (left && !mark_changed(touch, x, packed)) return true;
     if (goes_on) mark_around(touch);
     sk_touch_load(touch, packed);

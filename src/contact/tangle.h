@@ -22,7 +22,7 @@
  * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
  * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it. Where what the crossings of
  * two solids say adds up to little, they lead to all sides, and contact of all around holds both where they are: then there is none
- * between these two, and they go away from where they cross, or by the shortest way that one of their faces looks along (way_out.c). Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
+ * between these two, and they go away from where they cross, or, if all in the group are filled, by the shortest way that one of their faces looks along (way_out.c). Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
  * later one is taken to be a little aside (sides.c), or no edge would go through anything.
  *
  * Whoever is known to have come to where it is without going through anything is not looked at. What is done depends on
@@ -55,6 +55,7 @@ typedef struct sk_whole {
     uint32_t count;    /* of so many crossings */
     bool stuck;        /* a solid whose crossings lead to all sides: contact with others that go through something leaves it alone */
     uint32_t vertices; /* of a solid; */
+    bool filled;       /* there are particles in it, and so it keeps its shape; */
     sk_vec3 middle;    /* the sum of their places, m, */
     sk_vec3 crossed;   /* and of those where it is gone through; */
     uint32_t by_nothing; /* of crossings: how many there are since it has faces in one plane with another one; */
@@ -62,6 +63,7 @@ typedef struct sk_whole {
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
     /* of solids, or of a group's first piece (impact.c) */
+    bool hollow;           /* of a group: not all that go through each other in it are filled */
     bool held;             /* somebody of it is pinned */
     double momentum[3];    /* kg m/s; of a group: what it has lost */
     double mass;           /* kg; of a group: of who shares that */
@@ -89,6 +91,8 @@ typedef struct sk_tangle {
 
 struct sk_touch;
 
+/* Room for all that is by vertex or edge; false when there is no memory. */
+bool sk_tangle_reserve(struct sk_touch *touch, sk_allocator *allocator);
 /* Finds out what is tangled where all are before a substep, unless nothing can be, and where it is led by `step`, m.
  * `known`: all are where the last bound has left them. False when there is no memory. */
 bool sk_tangle_look(struct sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known);

@@ -238,8 +238,8 @@ bool sk_pair_is_tangled(const sk_touch *touch, const uint32_t corner[4], int sor
 
 /* ---- way_out.c ---- */
 
-/* Turns the way that a solid's crossings lead it to the shortest ones out of other solids that it crosses, where these are much shorter; returns whether
- * it did. */
+/* Turns the way that a solid's crossings lead it to the shortest one out of the first other solid that it crosses, where this is much shorter; returns
+ * whether it did. */
 bool sk_tangle_way_out(const sk_touch *touch, uint32_t one, sk_vec3 *way);
 
 /* ---- kept.c ---- */
