@@ -76,7 +76,7 @@ static void groups_of_meshes_are_full(void **state) {
         for (size_t b = 0; b < COUNT(bendings); b++)
             for (int renumbered = 0; renumbered < 2; renumbered++) {
                 skein_world *world = make_cloth(SIDE, pins[p], bendings[b], renumbered);
-                assert_full_groups(world, *pins[p] ? 4 : 2); // folds and edges, and from pins spans, short and long
+                assert_full_groups(world, 4); // folds and edges, and spans, short and long
                 skein_world_destroy(world);
             }
 }
@@ -130,7 +130,7 @@ static void a_broad_mesh_walks_without_pins(void **state) {
     (void)state;
     skein_world *world = make_cloth(BROAD_SIDE, "", "springs", true);
     square *s = make_square(BROAD_SIDE, true);
-    assert_full_groups(world, 2);
+    assert_full_groups(world, 4);
     for (size_t b = 0; b < world->rules.batches.count; b++)
         for (size_t i = 0; i < world->rules.batches.data[b]->sweep_count && !world->rules.batches.data[b]->only_bounds; i++)
             assert_non_null(world->rules.batches.data[b]->sweeps[i].slab_start);

@@ -228,21 +228,20 @@ static bool has_coarse(const tailor *t) {
 }
 
 /* Bounds over many edges: by coarse grids if it is a whole and even grid, else along its rows and columns, or for other meshes
- * along the mesh's own x and z, and by aggregates where it is large and may not tear. A mesh without pins gets none: it may be a
+ * along the mesh's own x and z, and by aggregates where it is large, pinned and may not tear. A closed mesh without pins gets none: it may be a
  * balloon, which must be able to grow. */
 static skein_status add_spans(tailor *t) {
     if (has_coarse(t)) return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
     bool pinned = false;
     for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
-    if (!t->rank || !pinned) return SKEIN_OK;
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
-    if (!(t->params->tear > 0)) {
+    if (pinned && !(t->params->tear > 0)) {
         skein_status status = sk_aggregates_add(&t->sheet, t->mass, t->pinned, t->rank, t->world, t->body, &t->held, t->error);
         if (status) return status;
     }
-    return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, t->world, t->body, t->error);
+    return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, !pinned, t->world, t->body, t->error);
 }
 
 /* Whether a sheet hangs by one point: all of its pins are within a few edges, and an eighth of its extent. */

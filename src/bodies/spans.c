@@ -7,6 +7,7 @@
 
 #include "base/status.h"
 #include "bodies/body.h"
+#include "bodies/order.h"
 
 /* Edges a span is long, as on grids (lines.c), and how many a straight walk crosses for each of its length. Measured on
  * irregular meshes that are let go from level and swing by two corners, 10 substeps, the worst of all frames: 4,096 vertices, 99th
@@ -197,7 +198,7 @@ static uint32_t walk(const faces *f, uint32_t from, const double direction[3], u
 /* ---- spans ---- */
 
 typedef struct span {
-    uint32_t first, a, b; /* `first`: the lower of their ranks */
+    uint32_t first, a, b; /* `first`: the lower of their ranks, or 0 */
     double length;
 } span;
 
@@ -246,22 +247,26 @@ static size_t find_spans(const faces *f, const double (*axes)[3], const uint32_t
                 to = walk(f, v, direction[d], edges, &length);
             }
             if (to == UINT32_MAX) continue;
-            out[count++] = (span){rank[v] < rank[to] ? rank[v] : rank[to], v, to, length};
+            out[count++] = (span){!rank ? 0 : rank[v] < rank[to] ? rank[v] : rank[to], v, to, length};
         }
     }
     qsort(out, count, sizeof *out, compare_spans);
     return count;
 }
 
-static skein_status add_batch(const faces *f, skein_world *world, sk_body *body, const span *spans, size_t count,
+static skein_status add_batch(const faces *f, skein_world *world, sk_body *body, const span *spans, size_t count, bool scattered,
                               skein_error *error) {
     uint32_t *pairs = sk_allocate(f->allocator, 2 * count * sizeof *pairs);
     real *rest = sk_allocate(f->allocator, count * sizeof *rest);
-    skein_status status = pairs && rest ? SKEIN_OK : sk_fail_memory(error, "span");
+    uint32_t *place = sk_allocate(f->allocator, count * sizeof *place);
+    skein_status status = pairs && rest && place ? SKEIN_OK : sk_fail_memory(error, "span");
+    if (scattered && !status) sk_order_scatter(place, count);
     for (size_t i = 0; i < count && !status; i++) {
-        pairs[2 * i] = body->first_particle + spans[i].a, pairs[2 * i + 1] = body->first_particle + spans[i].b;
-        rest[i] = (real)spans[i].length;
+        const span *s = &spans[scattered ? place[i] : i];
+        pairs[2 * i] = body->first_particle + s->a, pairs[2 * i + 1] = body->first_particle + s->b;
+        rest[i] = (real)s->length;
     }
+    sk_release(f->allocator, place);
     if (!status)
         status = sk_world_add_body_batch(world, body, &sk_distance, "span", (sk_material){0, 0}, false, count, pairs,
                                          rest, NULL, error);
@@ -271,15 +276,24 @@ static skein_status add_batch(const faces *f, skein_world *world, sk_body *body,
     return status;
 }
 
-skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, skein_world *world,
+/* Whether each side of each face has another face beside it. */
+static bool is_closed(const faces *f) {
+    bool closed = true;
+    for (size_t t = 0; t < f->count; t++)
+        for (int k = 0; k < 3; k++) closed &= f->beside[t][k] != UINT32_MAX;
+    return closed;
+}
+
+skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, bool may_grow, skein_world *world,
                           sk_body *body, skein_error *error) {
     faces f;
     span *spans = sk_allocate(sheet->allocator, DIRECTIONS * sheet->particle_count * sizeof *spans);
     skein_status status = find_faces(&f, sheet) && spans ? SKEIN_OK : sk_fail_memory(error, "span");
-    for (int i = SPANS; i-- > 0 && !status;) { // long ones first
+    const bool bounded = !status && !(may_grow && is_closed(&f));
+    for (int i = SPANS; i-- > 0 && bounded && !status;) { // long ones first
         if ((size_t)span_edges[i] * span_edges[i] >= sheet->particle_count) continue; // it would lead all around
         size_t count = find_spans(&f, axes, rank, span_edges[i], spans);
-        if (count) status = add_batch(&f, world, body, spans, count, error);
+        if (count) status = add_batch(&f, world, body, spans, count, !rank, error);
     }
     sk_release(sheet->allocator, spans);
     release(&f);

@@ -1,4 +1,5 @@
-/* Who has blown up: edges eight times as long as they were built. Such leaves meet nobody, for their boxes overlap with all others,
+/* Who has blown up: edges twelve times as long as they were built. (At eight, a sheet that falls on an edge, and hangs there by a corner for a moment,
+ * with 1,000 % of stretch, went through itself.) Such leaves meet nobody, for their boxes overlap with all others,
  * and a step would take minutes. It goes by where all are before a substep, so that it does not depend on when somebody was last
  * looked for; and is asked again only where they have moved so far against each other since that it may have changed. (Once a frame
  * was too seldom: what blew up within one met everybody until it ended.) */
@@ -15,7 +16,7 @@ static real square_between(const sk_vec4 *p, uint32_t a, uint32_t b) {
     return x * x + y * y + z * z;
 }
 
-/* How much longer the longest side may get until it is eight times as long as the longest was built: less than nothing if it is. */
+/* How much longer the longest side may get until it is twelve times as long as the longest was built: less than nothing if it is. */
 static real room_of(const sk_touch *touch, const sk_vec4 *p, const uint32_t *vertex, int count) {
     real now = 0, built = 0;
     for (int k = 0; k < count; k++) {
@@ -23,7 +24,7 @@ static real room_of(const sk_touch *touch, const sk_vec4 *p, const uint32_t *ver
         now = sk_max(now, square_between(p, a, b));
         built = sk_max(built, square_between(touch->skin.built, a, b));
     }
-    return built > 0 ? 8 * sk_sqrt(built) - sk_sqrt(now) : SK_REAL_MAX;
+    return built > 0 ? 12 * sk_sqrt(built) - sk_sqrt(now) : SK_REAL_MAX;
 }
 
 static real room_of_leaf(const sk_touch *touch, size_t i, const sk_vec4 *p) {
