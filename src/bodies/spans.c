@@ -22,6 +22,7 @@ typedef struct faces {
     const sk_sheet *sheet;
     uint32_t (*corner)[3], (*beside)[3]; /* UINT32_MAX: nobody */
     size_t count;
+    double (*side)[3]; /* lengths, m */
     size_t *start; /* of a particle's triangles in `around`; particles + 1 */
     uint32_t *around;
 } faces;
@@ -60,6 +61,7 @@ static double distance(const double *a, const double *b) {
 static void release(faces *f) {
     sk_release(f->allocator, f->corner);
     sk_release(f->allocator, f->beside);
+    sk_release(f->allocator, f->side);
     sk_release(f->allocator, f->start);
     sk_release(f->allocator, f->around);
 }
@@ -101,33 +103,37 @@ static uint32_t find_beside(const faces *f, uint32_t t, int k) {
     return found;
 }
 
+static const double *at(const faces *f, uint32_t particle) {
+    return f->sheet->position[particle];
+}
+
 static bool find_faces(faces *f, const sk_sheet *sheet) {
     *f = (faces){.allocator = sheet->allocator, .sheet = sheet};
     cut(f);
     f->corner = sk_allocate(f->allocator, f->count * sizeof *f->corner);
     f->beside = sk_allocate(f->allocator, f->count * sizeof *f->beside);
+    f->side = sk_allocate(f->allocator, f->count * sizeof *f->side);
     f->start = sk_allocate(f->allocator, (sheet->particle_count + 2) * sizeof *f->start);
     f->around = sk_allocate(f->allocator, 3 * f->count * sizeof *f->around);
-    if (!f->corner || !f->beside || !f->start || !f->around) return false;
+    if (!f->corner || !f->beside || !f->side || !f->start || !f->around) return false;
     cut(f);
     scatter(f);
     for (uint32_t t = 0; t < f->count; t++)
-        for (int k = 0; k < 3; k++) f->beside[t][k] = find_beside(f, t, k);
+        for (int k = 0; k < 3; k++) {
+            f->beside[t][k] = find_beside(f, t, k);
+            f->side[t][k] = distance(at(f, f->corner[t][k]), at(f, f->corner[t][(k + 1) % 3]));
+        }
     return true;
 }
 
 /* ---- walks ---- */
 
-static const double *at(const faces *f, uint32_t particle) {
-    return f->sheet->position[particle];
-}
-
-/* Lays the apex of a triangle whose side is known: to the right of the way from p to q or, for `side` -1, to the left. */
-static point lay(point p, point q, double from_p, double from_q, double side) {
-    double ex = q.x - p.x, ey = q.y - p.y, length = sqrt(ex * ex + ey * ey);
-    double along = (from_p * from_p - from_q * from_q + length * length) / (2 * length);
-    double square = from_p * from_p - along * along, away = side * sqrt(square > 0 ? square : 0);
-    return (point){p.x + (ex * along + ey * away) / length, p.y + (ey * along - ex * away) / length};
+/* Lays the apex of a triangle whose side from p to q is known, and how long it is: to the left of the way from p to q. */
+static point lay(point p, point q, double length, double from_p, double from_q) {
+    const double whole = 1 / length, ex = whole * (q.x - p.x), ey = whole * (q.y - p.y);
+    const double along = 0.5 * (whole * (from_p * from_p - from_q * from_q) + length);
+    const double square = from_p * from_p - along * along, away = sqrt(square > 0 ? square : 0);
+    return (point){p.x + ex * along - ey * away, p.y + ey * along + ex * away};
 }
 
 /* Begins in the triangle around v that the direction leads into; the line becomes the x axis. False if none is there. */
@@ -171,9 +177,12 @@ static bool go_on(const faces *f, strip *s) {
     uint32_t next = beyond(f, s);
     if (next == UINT32_MAX) return false;
     const uint32_t *c = f->corner[next];
-    uint32_t apex = c[0] != s->left && c[0] != s->right ? c[0] : c[1] != s->left && c[1] != s->right ? c[1] : c[2];
-    double from_left = distance(at(f, apex), at(f, s->left)), from_right = distance(at(f, apex), at(f, s->right));
-    point p = lay(s->at_left, s->at_right, from_left, from_right, -1);
+    int k = 0;
+    while (k < 2 && (c[k] == s->left || c[k] == s->right)) k++;
+    const uint32_t apex = c[k];
+    const double *side = f->side[next], after = side[k], before = side[(k + 2) % 3];
+    const bool left_first = c[(k + 1) % 3] == s->left;
+    const point p = lay(s->at_left, s->at_right, side[(k + 1) % 3], left_first ? after : before, left_first ? before : after);
     s->triangle = next;
     if (p.y >= 0) s->left = apex, s->at_left = p;
     else s->right = apex, s->at_right = p;
