@@ -176,6 +176,12 @@ static bool lay_across(tailor *t, sk_quad_grid *grid) {
     return true;
 }
 
+static bool has_pins(const tailor *t) {
+    bool pinned = false;
+    for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
+    return pinned;
+}
+
 /* Puts springs and particles in order: strips for grids, outward for other meshes. */
 static skein_status put_in_order(tailor *t) {
     sk_quad_grid grid = {0, 0, NULL};
@@ -190,9 +196,7 @@ static skein_status put_in_order(tailor *t) {
         return status;
     }
     // without pins there is no outward; in a thin mesh, the order along an axis has too few independent springs
-    bool pinned = false;
-    for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
-    if (!pinned && !sk_order_is_broad(&t->springs, &t->sheet))
+    if (!has_pins(t) && !sk_order_is_broad(&t->springs, &t->sheet))
         return sk_order_scattered(&t->springs) ? SKEIN_OK : sk_fail_memory(t->error, "the order of springs");
     t->rank = sk_allocate(&t->world->allocator, t->sheet.particle_count * sizeof *t->rank);
     if (!t->rank || !sk_order_outward(&t->springs, &t->sheet, t->pinned, t->rank))
@@ -233,8 +237,7 @@ static bool has_coarse(const tailor *t) {
 static skein_status add_spans(tailor *t) {
     if (has_coarse(t)) return sk_coarse_add(&t->lines, t->mass, t->world, t->body, &t->coarsest, t->error);
     if (t->lines.area) return sk_lines_add_spans(&t->lines, t->world, t->body, t->error);
-    bool pinned = false;
-    for (size_t i = 0; i < t->sheet.particle_count; i++) pinned |= t->pinned[i];
+    const bool pinned = has_pins(t);
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
     if (pinned && !(t->params->tear > 0)) {

@@ -62,8 +62,9 @@ typedef struct sk_whole {
     real after;        /* of crossings: how many more are with solids that come before it than after it */
     bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
     sk_vec3 low, high; /* between these, as it was built */
+    /* of a group's first piece */
+    bool hollow;           /* not all that go through each other in it are filled */
     /* of solids, or of a group's first piece (impact.c) */
-    bool hollow;           /* of a group: not all that go through each other in it are filled */
     bool held;             /* somebody of it is pinned */
     double momentum[3];    /* kg m/s; of a group: what it has lost */
     double mass;           /* kg; of a group: of who shares that */
@@ -84,7 +85,7 @@ typedef struct sk_tangle {
     uint32_t *part, *size;      /* the first vertex of its part, and how many are in the part of a first one */
     sk_vec4 *lead;              /* the sum of where its crossings lead it, m; w: how many do */
     sk_whole *whole;            /* of the pieces of the skin, and behind these of parts */
-    uint32_t *group;            /* of pieces: another one of who is tangled with it, or holds it back (impact.c) */
+    uint32_t *group;            /* of pieces: another one of who goes through it, or holds it back (impact.c) */
     uint8_t *marked;            /* it is not where the last bound left it; it is led */
     uint8_t *cut;               /* of edges: they go through something */
 } sk_tangle;
