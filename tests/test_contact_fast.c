@@ -4,6 +4,7 @@
 #include "irregular.h"
 
 static const double step_length = 1.0 / 60;
+enum { SIDE = 41, LED = SIDE * (SIDE / 2) + SIDE / 2 };
 
 /* The greatest speed, and the greatest with which places have changed since `before`, which is made the present. */
 static void find_speeds(const skein_world *world, vec3 *before, double *told, double *true_speed) {
@@ -21,7 +22,7 @@ static void find_speeds(const skein_world *world, vec3 *before, double *told, do
 static void thin_fabrics_lie_still(void **state) {
     (void)state;
     static const char *const fabrics[] = {"silk", "cotton"};
-    enum { SIDE = 41, FRAMES = 80 };
+    enum { FRAMES = 80 };
     for (size_t f = 0; f < COUNT(fabrics); f++) {
         skein_world *world = new_world("xpbd", 10);
         add_gravity(world);
@@ -48,14 +49,24 @@ static void thin_fabrics_lie_still(void **state) {
     }
 }
 
-/* Led up in a circle by one vertex, a grid by its middle, as a hand would that swings it: at 5 m/s a pin goes 1.7 thicknesses in a substep, with all that hangs from it
- * in folds. Planes that stood while the folds went by had it 40 times as long, with 300 to 500 crossings. */
+/* A step in which a sheet's middle, which was at a place, is led on a circle that rises, from rest to a speed in a fifth of a second. */
+static void lead(skein_world *world, vec3 at, double speed, int frame) {
+    const double radius = 0.5, ramp = 0.2, t = frame * step_length;
+    const double way = speed * (t < ramp ? t * t / (2 * ramp) : t - ramp / 2), angle = way / radius;
+    const uint32_t who = LED;
+    const double to[3] = {at.x + radius * sin(angle), at.y + 0.5 * t, at.z + radius * (1 - cos(angle))};
+    OK(world, skein_pins_move(world, &who, 1, to));
+    steps(world, 1, step_length);
+}
+
+/* As a hand would that swings it: at 5 m/s a pin goes 1.7 thicknesses in a 600th of a second, with all that hangs from it
+ * in folds. Planes that stood while the folds went by had it 40 times as long, with 300 to 500 crossings; and at 10 m/s it was 8 to 20 times as long
+ * in as many substeps (world/finer.c). */
 static void what_is_led_fast_follows(void **state) {
     (void)state;
-    enum { SIDE = 41, LED = SIDE * (SIDE / 2) + SIDE / 2 };
-    const double radius = 0.5, ramp = 0.2;
+    static const int speeds[] = {2, 5, 10};
     for (int irregular = 0; irregular < 2; irregular++)
-        for (int speed = 2; speed < 6; speed += 3) {
+        for (size_t s = 0; s < COUNT(speeds); s++) {
             skein_world *world = new_world("xpbd", 10);
             add_gravity(world);
             OK(world, skein_force_add(world, "contact", NULL, NULL));
@@ -66,11 +77,7 @@ static void what_is_led_fast_follows(void **state) {
             const vec3 at = position_of(world, LED);
             double most = 0;
             for (int frame = 1; frame <= 60; frame++) {
-                const double t = frame * step_length, way = speed * (t < ramp ? t * t / (2 * ramp) : t - ramp / 2), angle = way / radius;
-                const uint32_t who = LED;
-                const double to[3] = {at.x + radius * sin(angle), at.y + 0.5 * t, at.z + radius * (1 - cos(angle))};
-                OK(world, skein_pins_move(world, &who, 1, to));
-                steps(world, 1, step_length);
+                lead(world, at, speeds[s], frame);
                 const skein_statistics now = statistics_of(world);
                 assert_int_equal(now.crossings, 0);
                 most = fmax(most, now.max_stretch);
@@ -80,7 +87,87 @@ static void what_is_led_fast_follows(void **state) {
         }
 }
 
+static skein_world *sheet(int threads, double more, double thickness, bool meets) {
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    assert_non_null(world);
+    OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
+    add_gravity(world);
+    if (meets) OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_REAL("thickness", thickness)), NULL));
+    char pin[32];
+    snprintf(pin, sizeof pin, "%d", LED);
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pin)), NULL));
+    return world;
+}
+
+static uint64_t substeps_of_frame(skein_world *world, vec3 at, double speed, int frame) {
+    const uint64_t before = statistics_of(world).substeps;
+    if (frame) lead(world, at, speed, frame);
+    else steps(world, 1, step_length);
+    return statistics_of(world).substeps - before;
+}
+
+/* A step has more substeps while a pin is led by more than two thicknesses in each, as many as that asks for and not all at once, up to a limit;
+ * then as many as it was told. */
+static void what_is_led_fast_has_more_substeps(void **state) {
+    (void)state;
+    static const struct {
+        double speed, more, thickness;
+        bool meets;
+        uint64_t least, most; /* substeps */
+    } cases[] = {
+        {10, 10, 0.005, true, 18, 36}, // 17 past what is at rest, and twice as many past what flies the other way: of four each
+        {10, 1, 0.005, true, 10, 10},  // never
+        {10, 2, 0.0005, true, 20, 20}, // as many as it may
+        {10, 10, 0.005, false, 10, 10}, // nothing meets
+        {2, 10, 0.005, true, 10, 10},  // slowly
+    };
+    for (size_t c = 0; c < COUNT(cases); c++) {
+        skein_world *world = sheet(1, cases[c].more, cases[c].thickness, cases[c].meets);
+        steps(world, 1, step_length);
+        const vec3 at = position_of(world, LED);
+        uint64_t most = 0, last = 10;
+        for (int frame = 1; frame <= 25; frame++) {
+            const uint64_t now = substeps_of_frame(world, at, cases[c].speed, frame);
+            assert_true(now >= 10 && now <= last + last / 4 + 1);
+            most = now > most ? now : most, last = now;
+        }
+        if (most < cases[c].least || most > cases[c].most) fprintf(stderr, "case %zu: %llu substeps\n", c, (unsigned long long)most);
+        assert_true(most >= cases[c].least && most <= cases[c].most);
+        assert_int_equal(substeps_of_frame(world, at, 0, 0), 10);
+        skein_world_destroy(world);
+    }
+}
+
+/* From a snapshot in the midst of it, and with two threads, bit for bit. */
+static void more_substeps_go_on_from_a_snapshot(void **state) {
+    (void)state;
+    skein_world *world = sheet(1, 10, 0.005, true), *other = sheet(2, 10, 0.005, true), *later = NULL;
+    steps(world, 1, step_length), steps(other, 1, step_length);
+    const vec3 at = position_of(world, LED);
+    for (int frame = 1; frame <= 20; frame++) {
+        lead(world, at, 10, frame), lead(other, at, 10, frame);
+        if (frame != 9) {
+            if (later) lead(later, at, 10, frame);
+            continue;
+        }
+        size_t size = skein_snapshot_size(world);
+        void *bytes = malloc(size);
+        assert_non_null(bytes);
+        OK(world, skein_snapshot_write(world, bytes, size, &size));
+        later = sheet(1, 10, 0.005, true);
+        OK(later, skein_snapshot_read(later, bytes, size));
+        free(bytes);
+    }
+    assert_true(skein_world_hash(world) == skein_world_hash(other));
+    assert_true(skein_world_hash(world) == skein_world_hash(later));
+    skein_world_destroy(world), skein_world_destroy(other), skein_world_destroy(later);
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(thin_fabrics_lie_still), cmocka_unit_test(what_is_led_fast_follows)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(thin_fabrics_lie_still), cmocka_unit_test(what_is_led_fast_follows),
+                                       cmocka_unit_test(what_is_led_fast_has_more_substeps),
+                                       cmocka_unit_test(more_substeps_go_on_from_a_snapshot)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

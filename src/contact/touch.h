@@ -190,6 +190,7 @@ typedef struct sk_touch {
 
 typedef struct sk_contact_params {
     double thickness, friction, recovery;
+    int32_t more_substeps;
     char *ignore;
 } sk_contact_params;
 

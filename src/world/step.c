@@ -126,30 +126,29 @@ static bool make_live(skein_world *world) {
     return !any || (world->live = sk_allocate(&world->allocator, world->plan.count * sizeof *world->live));
 }
 
-/* How many substeps a step of dt has: as many as its method says, but where they would be shorter than four fifths of the last ones, and
+/* How many substeps a step of dt has: as many as its method says, or more where pins are fast, but where they would be shorter than four fifths of the last ones, and
  * one more than there are of those in it. A sheet of 33 x 33 that hangs still by two corners gains 0.8 J at most with all of them in steps of 1/30 and
  * 1/144 s in turn, 1e-4 so; a frame of 0.1 s between ones of 1/144: 0.1 J, and 0.007; frames of 1/30 to 1/144 by chance 0.009, and 3e-4 (two thirds
  * instead of four fifths: 0.004); so do irregular meshes, and in contact. Not less than one more, or frames of 1/144 s stay with one substep. */
-static int substeps_of(const skein_world *world, double dt) {
-    const int most = world->method->substeps(world->method_params);
+static int substeps_of(const skein_world *world, double dt, int most) {
     if (!world->method->shortens_slowly || !(world->substep > 0) || isinf(world->substep)) return most;
     const double as_long = dt / (double)world->substep;
     return (int)fmin(fmax(floor(1.25 * as_long), floor(as_long + 1e-3) + 1), most);
 }
 
-/* Writes the method's part of the plan, with other parameters where these are fewer substeps. */
+/* Writes the method's part of the plan, with other parameters where these are more or fewer substeps. */
 static void write_method(sk_plan_builder *builder, const skein_world *world, double dt, int substeps) {
     const sk_method_type *method = world->method;
-    sk_substeps *fewer = NULL;
-    if (substeps < method->substeps(world->method_params)) {
-        fewer = sk_allocate(builder->allocator, method->kind.params_size);
-        builder->no_memory |= !fewer;
-        if (!fewer) return;
-        memcpy(fewer, world->method_params, method->kind.params_size);
-        fewer->substeps = substeps;
+    sk_substeps *other = NULL;
+    if (substeps != method->substeps(world->method_params)) {
+        other = sk_allocate(builder->allocator, method->kind.params_size);
+        builder->no_memory |= !other;
+        if (!other) return;
+        memcpy(other, world->method_params, method->kind.params_size);
+        other->substeps = substeps;
     }
-    method->write(builder, fewer ? fewer : world->method_params, dt);
-    sk_release(builder->allocator, fewer);
+    method->write(builder, other ? other : world->method_params, dt);
+    sk_release(builder->allocator, other);
 }
 
 skein_status sk_world_compile(skein_world *world, double dt, skein_error *error) {
@@ -160,7 +159,9 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!status) status = sk_world_arrange(world, error);
     if (!status) status = sk_world_find_pins(world, error);
     if (status) return status;
-    const int substeps = substeps_of(world, dt);
+    int most = world->method->substeps(world->method_params);
+    if (world->method->shortens_slowly && !sk_world_find_finer(world, dt, most, &most)) return sk_fail_memory(error, "places for pins");
+    const int substeps = substeps_of(world, dt, most);
     if (!world->plan_stale && world->plan_dt == dt && world->plan_substeps == substeps) return SKEIN_OK;
     const sk_method_type *method = world->method;
     status = sk_method_check(method, world->method_params, &world->rules, error);

@@ -428,6 +428,9 @@ bool sk_world_has_leashes(const skein_world *world);
 skein_status sk_world_set_leashes(skein_world *world, double dt, skein_error *error);
 /* Lists what is to be led to its place at `time`. False when there is no memory. */
 bool sk_world_lead(skein_world *world, double time);
+/* As many substeps as a step of `dt` is to have where pins are led fast in contact; else as many as usual (world/finer.c). False when there
+ * is no memory. */
+bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps);
 /* Before a step of `dt` runs: all that is led is on its way, and whoever follows what moves is told (world/pins.c). */
 skein_status sk_world_set_out(skein_world *world, double dt, skein_error *error);
 /* After it: what was led has arrived, and rests. Where the step failed it has not moved, and its places still wait. */
