@@ -32,6 +32,7 @@ static const struct {
     {"cache", "fps", "of that file; a program says its interval"},
     {"translate", "jump_turn", "it never turns"},
     {NULL, "sleep", "it takes half a second of rest; test_sleep.c"},
+    {"contact", "more_substeps", "of pins that are led fast past others; test_contact_fast.c"},
     {"attach", "colliders", "it is no moving frame, and says so; test_attach.c"},
     {"attach", "jump_times", "as colliders"},
     {"attach", "to", "there is but one that it can name, which is the default; test_attach.c has several"},

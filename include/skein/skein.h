@@ -401,7 +401,7 @@ skein_status skein_world_step(skein_world *world, double dt);
 skein_status skein_world_reset(skein_world *world);
 double skein_world_time(const skein_world *world); /* seconds of simulated time */
 /* Sets the clock alone: what moves by it (colliders) is elsewhere then. With positions and velocities that were copied
- * before, it takes a world back to where it was. 0 to 1e15. */
+ * before, it takes a world back to where it was, but for how long its last substep was, which snapshots know. 0 to 1e15. */
 skein_status skein_world_time_set(skein_world *world, double seconds);
 
 /* A fixed step for a loop with uneven frames: time goes in, whole steps come out, the rest is kept.

@@ -57,7 +57,8 @@ static double way_past(const skein_world *world, const sk_body *body, double dt)
     bool any = false;
     for (size_t i = 0; i < world->led.count; i++) {
         const sk_pin *pin = &world->led.data[i];
-        if (pin->particle - body->first_particle >= body->particle_count || !all->pinned[pin->particle]) continue;
+        if (pin->particle - body->first_particle >= body->particle_count) continue;
+        if (!all->pinned[pin->particle] || !sk_particle_is_here(all, pin->particle)) continue;
         if (!any) mean_way(world, body, dt, mean);
         any = true;
         const sk_vec4 x = all->vector[SK_X][all->slot_of[pin->particle]];

@@ -381,7 +381,7 @@ skein_status skein_world_time_set(skein_world *world, double seconds) {
                        seconds);
     stop_what_moves(world);
     sk_world_rouse(world);
-    world->time = seconds;
+    world->time = seconds, world->substep = 0; // how long the last one was says nothing of the next
     sk_world_place_colliders(world);
     sk_record_clock(world, seconds);
     return SKEIN_OK;
