@@ -78,6 +78,16 @@ static double wanted_by(const skein_world *world, const sk_object *object, doubl
     return fmin(way_past(world, object->as.body, dt) / (fast * thickness), its_most);
 }
 
+/* Whether a moving frame takes a body's free particles along. */
+static bool is_carried(const skein_world *world, const sk_common *body) {
+    for (size_t i = 0; i < world->motions.count; i++) {
+        const sk_motion_common *common = world->motions.data[i]->common;
+        const bool its = !common->on[0] || sk_names_mean(common->on, body->name, body->groups);
+        if (its && common->enabled && common->inertia < 1) return true;
+    }
+    return false;
+}
+
 bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps) {
     *substeps = usual;
     if (world->device || world->share || (!world->pins.count && !world->motions.count)) return true; // there all know the same number
@@ -88,7 +98,7 @@ bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps
     double wanted = 0, most = usual;
     for (size_t i = 0; i < world->objects.count && world->led.count; i++) {
         const sk_object *object = world->objects.data[i];
-        if (object->category == SKEIN_BODY && !sk_world_carries(world, &object->common.plain))
+        if (object->category == SKEIN_BODY && !is_carried(world, &object->common.plain))
             wanted = fmax(wanted, wanted_by(world, object, usual, dt, &most));
     }
     world->led.count = 0;
