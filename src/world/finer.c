@@ -3,11 +3,12 @@
  * A bound lets nothing pass that comes by several thicknesses in a substep, but stops it corner by corner, while springs pull on what
  * goes on: of 48 sheets of 25 x 25 to 41 x 41, grids and irregular ones, that were led by their middles on circles of 0.3 and 0.5 m at 8
  * and 10 m/s (2.7 and 3.3 thicknesses in a substep of a 600th of a second) 33 had edges of 2 to 20 times their length, and 20 had
- * crossings. Now none has, the worst is stretched by 70 %, and frames take 31 ms in the mean instead of 55, for nothing is stuck. (Pairs that were
+ * crossings. Now none has, the worst is stretched by 94 % for a moment, and frames take 31 ms in the mean instead of 55, for nothing is stuck. (Pairs that were
  * pushed before they were near left 19 of them so, and heaps took longer at their impacts.)
  *
  * What counts is how far a pin is led from where its body's free particles go in the mean, or rest where there are none: what flies along
- * with its pins has nothing to fear, and what a moving frame carries is left to that (world/frames.c). It follows from the state and from where pins are led in this step alone, and from how long the last substep was, which the state knows. */
+ * with its pins has nothing to fear, and what a moving frame carries is left to that (world/frames.c). It follows from where pins are led in
+ * this step and from the state alone, which knows how long the last substep was. */
 #include <math.h>
 
 #include "world/world.h"
@@ -17,21 +18,19 @@ static const double fast = 2;
 /* With fewer than this share of those that there are, they become fewer: else a plan would be written anew in each step. */
 static const double kept = 0.6;
 
-/* Of a rule of contact or its kind's. */
-static double number_of(const sk_force *force, const char *name) {
-    const skein_kind *kind = &force->type->kind;
-    const skein_field *field = sk_field_named(kind->fields, kind->field_count, name);
-    return field ? sk_field_load(field, force->params).number[0] : 0;
+static bool is_contact(const sk_object *object) {
+    return object->category == SKEIN_FORCE && object->common.plain.enabled && object->as.force->type->meeting;
 }
 
-/* The rule that the surfaces of a body meet others by, and the one of them that asks for the most. */
-static const sk_force *rule_of(const skein_world *world, const sk_object *object) {
-    const sk_force *found = NULL;
-    for (size_t i = 0; i < world->rules.forces.count; i++) {
-        const sk_force *force = world->rules.forces.data[i];
-        if (!force->type->meeting || !*force->enabled) continue;
-        if ((*force->on)[0] && !sk_names_mean(*force->on, object->common.plain.name, object->common.plain.groups)) continue;
-        if (!found || number_of(force, "more_substeps") > number_of(found, "more_substeps")) found = force;
+/* The rule that the surfaces of a body meet others by: of several, the one that allows the most. */
+static const sk_object *rule_of(const skein_world *world, const sk_common *body) {
+    const sk_object *found = NULL;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        const sk_object *rule = world->objects.data[i];
+        if (!is_contact(rule)) continue;
+        const char *on = rule->common.plain.on;
+        if (on[0] && !sk_names_mean(on, body->name, body->groups)) continue;
+        if (!found || sk_object_number(rule, "more_substeps") > sk_object_number(found, "more_substeps")) found = rule;
     }
     return found;
 }
@@ -70,10 +69,10 @@ static double way_past(const skein_world *world, const sk_body *body, double dt)
 
 /* How many substeps a body's pins ask for, and how many they may have. */
 static double wanted_by(const skein_world *world, const sk_object *object, double usual, double dt, double *most) {
-    const sk_force *rule = rule_of(world, object);
+    const sk_object *rule = rule_of(world, &object->common.plain);
     if (!rule) return 0;
-    const double own = sk_object_number(object, "contact.thickness"), thickness = own > 0 ? own : number_of(rule, "thickness");
-    const double its_most = usual * number_of(rule, "more_substeps");
+    const double own = sk_object_number(object, "contact.thickness"), thickness = own > 0 ? own : sk_object_number(rule, "thickness");
+    const double its_most = usual * sk_object_number(rule, "more_substeps");
     *most = fmax(*most, its_most);
     return fmin(way_past(world, object->as.body, dt) / (fast * thickness), its_most);
 }
@@ -92,7 +91,7 @@ bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps
     *substeps = usual;
     if (world->device || world->share || (!world->pins.count && !world->motions.count)) return true; // there all know the same number
     bool meets = false;
-    for (size_t i = 0; i < world->rules.forces.count; i++) meets |= *world->rules.forces.data[i]->enabled && world->rules.forces.data[i]->type->meeting;
+    for (size_t i = 0; i < world->objects.count; i++) meets |= is_contact(world->objects.data[i]);
     if (!meets) return true;
     if (!sk_world_lead(world, world->time + dt)) return false;
     double wanted = 0, most = usual;

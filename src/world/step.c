@@ -126,8 +126,8 @@ static bool make_live(skein_world *world) {
     return !any || (world->live = sk_allocate(&world->allocator, world->plan.count * sizeof *world->live));
 }
 
-/* How many substeps a step of dt has: as many as its method says, or more where pins are fast, but where they would be shorter than four fifths of the last ones, and
- * one more than there are of those in it. A sheet of 33 x 33 that hangs still by two corners gains 0.8 J at most with all of them in steps of 1/30 and
+/* How many substeps a step of dt has: as many as its method says, or more where pins are fast (`most`), but where they would be shorter
+ * than four fifths of the last ones, as many as that allows, or one more than there are of those in it. A sheet of 33 x 33 that hangs still by two corners gains 0.8 J at most with all of them in steps of 1/30 and
  * 1/144 s in turn, 1e-4 so; a frame of 0.1 s between ones of 1/144: 0.1 J, and 0.007; frames of 1/30 to 1/144 by chance 0.009, and 3e-4 (two thirds
  * instead of four fifths: 0.004); so do irregular meshes, and in contact. Not less than one more, or frames of 1/144 s stay with one substep. */
 static int substeps_of(const skein_world *world, double dt, int most) {
