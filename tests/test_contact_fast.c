@@ -1,5 +1,5 @@
-/* What goes farther in a substep than its contact is thick: thin fabrics that fall in a heap, and sheets that are led fast by a pin. Nothing
- * goes through anything, velocities are those with which places change, and edges keep their length. */
+/* What goes farther in a substep than its contact is thick: thin fabrics that fall in a heap, sheets that are led fast by a pin, and what is
+ * thrown at something. Nothing goes through anything, velocities are those with which places change, and edges keep their length. */
 #include "crossings.h"
 #include "irregular.h"
 
@@ -165,9 +165,134 @@ static void more_substeps_go_on_from_a_snapshot(void **state) {
     skein_world_destroy(world), skein_world_destroy(other), skein_world_destroy(later);
 }
 
+/* What is thrown at what: a sheet on the upper edge of one that is pinned, a jelly at one that hangs, a sheet on a jelly that lies there. */
+typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY } aim;
+
+static void add_sheet(skein_world *world, bool irregular, const char *pins, double height, double tilt, double yaw, double speed) {
+    const skein_setting *settings = SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("name", pins[0] ? "cloth" : "sheet"),
+                                                   SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0.1, height, 0.05),
+                                                   SKEIN_VEC3("rotation", tilt, yaw, 0), SKEIN_VEC3("velocity", 0, -speed, 0));
+    if (irregular) add_irregular(world, SIDE, settings + 1);
+    else OK(world, skein_body_add(world, "cloth", NULL, settings, NULL));
+}
+
+static void add_jelly(skein_world *world, double mass, double height, double depth, double speed) {
+    OK(world, skein_body_add(world, "lattice", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "jelly"), SKEIN_VEC3("grid", 6, 6, 6), SKEIN_VEC3("size", 0.3, 0.3, 0.3),
+                                            SKEIN_REAL("mass", mass), SKEIN_VEC3("position", 0, height, depth), SKEIN_VEC3("rotation", 10, 35, 0),
+                                            SKEIN_VEC3("velocity", 0, 0, -speed)),
+                             NULL));
+}
+
+static skein_world *thrown(int threads, double more, const char *ignore, aim what, bool irregular, double speed) {
+    skein_world_desc desc = skein_default_world_desc();
+    desc.thread_count = threads;
+    skein_world *world = skein_world_create(&desc, NULL);
+    assert_non_null(world);
+    add_gravity(world);
+    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_TEXT("ignore", ignore)), NULL));
+    if (what == AT_AN_EDGE) {
+        add_sheet(world, false, "top edge, bottom edge", 0, 90, 0, 0);
+        add_sheet(world, irregular, "", 0.9, 8, 40, speed);
+    } else if (what == A_JELLY) {
+        add_sheet(world, false, "top edge", 0, 90, 0, 0);
+        add_jelly(world, 1, 0, 0.8, speed);
+    } else {
+        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.25)), NULL));
+        add_jelly(world, 5, 0, 0, 0);
+        add_sheet(world, irregular, "", 0.6, 15, 70, speed);
+    }
+    return world;
+}
+
+static void what_is_thrown_is_not_stretched(void **state) {
+    (void)state;
+    static const struct {
+        aim what;
+        bool irregular;
+        double speed, most, without; /* of stretch, with more substeps and without */
+    } cases[] = {
+        {AT_AN_EDGE, false, 12, 0.4, 1}, {AT_AN_EDGE, true, 12, 0.4, 1}, {A_JELLY, false, 20, 0.4, 1},
+        {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8},
+    };
+    for (size_t c = 0; c < COUNT(cases); c++) {
+        double most[2] = {0, 0};
+        for (int more = 0; more < 2; more++) {
+            skein_world *world = thrown(1, more ? 10 : 1, "", cases[c].what, cases[c].irregular, cases[c].speed);
+            for (int frame = 0; frame < 30; frame++) {
+                steps(world, 1, step_length);
+                const skein_statistics now = statistics_of(world);
+                if (more) assert_int_equal(now.crossings, 0);
+                most[more] = fmax(most[more], now.max_stretch);
+            }
+            skein_world_destroy(world);
+        }
+        assert_under(most[1], cases[c].most);
+        assert_true(most[0] > cases[c].without);
+    }
+}
+
+/* Substeps of each frame of what is thrown. */
+static void count_substeps(skein_world *world, uint64_t *each, int frames) {
+    uint64_t before = statistics_of(world).substeps;
+    for (int frame = 0; frame < frames; frame++) {
+        steps(world, 1, step_length);
+        const uint64_t now = statistics_of(world).substeps;
+        each[frame] = now - before;
+        before = now;
+    }
+}
+
+/* As many as it takes when bodies meet, not all at once; none more for what is far, slow, does not meet or flies along. */
+static void what_comes_near_has_more_substeps(void **state) {
+    (void)state;
+    enum { FRAMES = 30 };
+    uint64_t each[FRAMES];
+    skein_world *world = thrown(1, 10, "", A_JELLY, false, 12);
+    count_substeps(world, each, FRAMES);
+    uint64_t most = 0;
+    for (int frame = 0; frame < FRAMES; frame++) {
+        if (frame) assert_true(each[frame] <= each[frame - 1] + each[frame - 1] / 4 + 1);
+        most = each[frame] > most ? each[frame] : most;
+    }
+    assert_true(most >= 30 && most <= 80); // 12 m/s are 80 halves of 5 mm in a step, but it is there in four steps
+    skein_world_destroy(world);
+    static const struct {
+        double more, speed;
+        const char *ignore;
+    } none[] = {{1, 12, ""}, {10, 12, "cloth:jelly"}, {10, 1, ""}, {10, 12, "cloth, jelly:cloth"}, {10, -12, ""}};
+    for (size_t c = 0; c < COUNT(none); c++) {
+        world = thrown(1, none[c].more, none[c].ignore, A_JELLY, false, none[c].speed);
+        count_substeps(world, each, FRAMES);
+        for (int frame = 0; frame < FRAMES; frame++)
+            if (each[frame] != 10) fail_msg("case %zu, frame %d: %llu substeps", c, frame, (unsigned long long)each[frame]);
+        skein_world_destroy(world);
+    }
+}
+
+/* The same bits for two threads, and from a snapshot before it meets. */
+static void what_comes_near_goes_on_from_a_snapshot(void **state) {
+    (void)state;
+    skein_world *world = thrown(1, 10, "", AT_AN_EDGE, true, 12), *other = thrown(2, 10, "", AT_AN_EDGE, true, 12);
+    skein_world *later = thrown(1, 10, "", AT_AN_EDGE, true, 12);
+    steps(world, 2, step_length), steps(other, 12, step_length);
+    size_t size = skein_snapshot_size(world);
+    void *bytes = malloc(size);
+    assert_non_null(bytes);
+    OK(world, skein_snapshot_write(world, bytes, size, &size));
+    OK(later, skein_snapshot_read(later, bytes, size));
+    free(bytes);
+    steps(world, 10, step_length), steps(later, 10, step_length);
+    assert_true(skein_world_hash(world) == skein_world_hash(other));
+    assert_true(skein_world_hash(world) == skein_world_hash(later));
+    skein_world_destroy(world), skein_world_destroy(other), skein_world_destroy(later);
+}
+
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(thin_fabrics_lie_still), cmocka_unit_test(what_is_led_fast_follows),
                                        cmocka_unit_test(what_is_led_fast_has_more_substeps),
-                                       cmocka_unit_test(more_substeps_go_on_from_a_snapshot)};
+                                       cmocka_unit_test(more_substeps_go_on_from_a_snapshot),
+                                       cmocka_unit_test(what_is_thrown_is_not_stretched), cmocka_unit_test(what_comes_near_has_more_substeps),
+                                       cmocka_unit_test(what_comes_near_goes_on_from_a_snapshot)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -302,7 +302,7 @@
 #define SKEIN_CONTACT_THICKNESS "thickness" /* a number in m; how near surfaces come to each other; less where a body's own vertices are nearer as it was built */
 #define SKEIN_CONTACT_FRICTION "friction" /* a number; coefficient of friction between them */
 #define SKEIN_CONTACT_RECOVERY "recovery" /* a number in m/s; how fast surfaces that have gone through each other are led apart; 0: they stay so */
-#define SKEIN_CONTACT_MORE_SUBSTEPS "more_substeps" /* a whole number; xpbd and pbd, where pins are led past what hangs from them by over two thicknesses a substep: up to so many times as many; 1: never */
+#define SKEIN_CONTACT_MORE_SUBSTEPS "more_substeps" /* a whole number; xpbd and pbd, where bodies near each other by over half a thickness a substep, or pins are led past what hangs from them by over two: up to so many times as many; 1: never */
 #define SKEIN_CONTACT_IGNORE "ignore" /* a text; pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: "cape:shirt, cape:cape" */
 
 /* ---- colliders ---- */
@@ -393,11 +393,11 @@
 #define SKEIN_BACKWARD_EULER_PRECONDITIONER_CHOLESKY "cholesky"
 
 #define SKEIN_XPBD "xpbd" /* positions corrected constraint by constraint; stable at any stiffness */
-#define SKEIN_XPBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact */
+#define SKEIN_XPBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); more is firmer and more exact */
 #define SKEIN_XPBD_ITERATIONS "iterations" /* a whole number; passes over the constraints in a substep; more substeps are better spent */
 
 #define SKEIN_PBD "pbd" /* positions corrected by a share of each error; passes forget each other and share the stiffness */
-#define SKEIN_PBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter; more is firmer and more exact */
+#define SKEIN_PBD_SUBSTEPS "substeps" /* a whole number; equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); more is firmer and more exact */
 #define SKEIN_PBD_ITERATIONS "iterations" /* a whole number; passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer */
 #define SKEIN_PBD_INERTIA "inertia" /* true or false; false: constraints move positions, and pins go their way; other velocities, and forces, are as if they were not */
 // clang-format on

@@ -42,3 +42,25 @@ bool sk_names_mean(const char *names, const char *name, const char *groups) {
         if (sk_names_have(names, group)) return true;
     return false;
 }
+
+static sk_word trimmed(const char *at, const char *end) {
+    while (at < end && *at == ' ') at++;
+    while (end > at && end[-1] == ' ') end--;
+    return (sk_word){at, (size_t)(end - at)};
+}
+
+bool sk_pairs_next(const char **pairs, sk_word pair[2]) {
+    const char *at = *pairs, *end = at + strcspn(at, ","), *colon = memchr(at, ':', (size_t)(end - at));
+    if (!*at) return false;
+    pair[0] = trimmed(at, colon ? colon : end);
+    pair[1] = colon ? trimmed(colon + 1, end) : pair[0];
+    *pairs = end + (*end == ',');
+    return true;
+}
+
+bool sk_pairs_mean(const char *pairs, const char *name, const char *groups, const char *other, const char *others_groups) {
+    for (sk_word pair[2]; sk_pairs_next(&pairs, pair);)
+        for (int k = 0; k < 2; k++)
+            if (sk_is_called(name, groups, pair[k]) && sk_is_called(other, others_groups, pair[1 - k])) return true;
+    return false;
+}

@@ -1,80 +1,51 @@
-/* More substeps where pins are led fast past what hangs from them, in a world where surfaces meet.
+/* More substeps where surfaces come near each other fast, or pins are led fast past what hangs from them.
  *
  * A bound lets nothing pass that comes by several thicknesses in a substep, but stops it corner by corner, while springs pull on what
- * goes on: of 48 sheets of 25 x 25 to 41 x 41, grids and irregular ones, that were led by their middles on circles of 0.3 and 0.5 m at 8
- * and 10 m/s (2.7 and 3.3 thicknesses in a substep of a 600th of a second) 33 had edges of 2 to 20 times their length, and 20 had
- * crossings. Now none has, the worst is stretched by 94 % for a moment, and frames take 31 ms in the mean instead of 55, for nothing is stuck. (Pairs that were
- * pushed before they were near left 19 of them so, and heaps took longer at their impacts.)
+ * goes on, and these are asked once a substep. So substeps are to be so short that nobody comes far in one:
+ *   bodies   that come near each other, by half a thickness. Of 60 that were thrown at 3 to 20 m/s (sheets of 30 x 30 and 41 x 41, half of them
+ *            irregular, on the upper edge of one that is pinned; a jelly at a hung sheet; sheets on a jelly) 30 had edges of more than
+ *            twice their length in substeps of a 600th of a second, and three have; frames took 11.2 ms in the mean, and take 11.1, for what
+ *            comes slowly is near fewer. By a whole thickness: nine; by a third: two, and worst frames a fifth longer.
+ *   pins     past the free particles of their body, in the mean, by two. Of 48 sheets of 25 x 25 to 41 x 41, grids and irregular ones, that
+ *            were led by their middles on circles of 0.3 and 0.5 m at 8 and 10 m/s, 33 had edges of 2 to 20 times their length, and 20 had
+ *            crossings. Now none has, the worst is stretched by 94 % for a moment, and frames take 31 ms in the mean instead of 55. (Pairs
+ *            that were pushed before they were near left 19 of them so, and heaps took longer at their impacts.)
+ * What flies along with its pins has nothing to fear, and what a moving frame carries is left to that (world/frames.c). A sheet that meets
+ * but itself or a collider has as many as ever: asked by how its velocities spread, it had no fewer crossings, nor less stretch.
  *
- * What counts is how far a pin is led from where its body's free particles go in the mean, or rest where there are none: what flies along
- * with its pins has nothing to fear, and what a moving frame carries is left to that (world/frames.c). It follows from where pins are led in
- * this step and from the state alone, which knows how long the last substep was. */
+ * Substeps become shorter by a fifth from step to step at most (world/step.c), so bodies are looked for some steps ahead, and have what
+ * leads to enough of them when they meet. It all follows from where pins are led in this step and from the state alone, which knows how long the last
+ * substep was. */
 #include <math.h>
+#include <stdlib.h>
 
 #include "world/world.h"
 
-/* Thicknesses that a pin may be led by in a substep. */
-static const double fast = 2;
+/* Thicknesses in a substep: that a pin may be led by, and that bodies may come nearer. */
+static const double led = 2, nearer = 0.5;
+/* By what share a substep may be shorter from one step to the next, and for how many steps bodies are expected. */
+static const double shorter = 0.8, soon = 12;
 /* With fewer than this share of those that there are, they become fewer: else a plan would be written anew in each step. */
 static const double kept = 0.6;
+
+/* A body as others come near it, and as its pins go past it. */
+typedef struct comer {
+    const sk_object *object;
+    double thickness;       /* m, its own; 0: the rule's */
+    double low[3], high[3]; /* m: around all of it, now, */
+    double first, last;     /* and along x, until `soon` */
+    double free[3];         /* m/s: its free particles, in the mean, or 0 where there are none; */
+    double all[3];          /* all of it, where a pin goes as it is led; */
+    double past;            /* and how fast a pin goes past the free ones, at most */
+} comer;
 
 static bool is_contact(const sk_object *object) {
     return object->category == SKEIN_FORCE && object->common.plain.enabled && object->as.force->type->meeting;
 }
 
-/* The rule that the surfaces of a body meet others by: of several, the one that allows the most. */
-static const sk_object *rule_of(const skein_world *world, const sk_common *body) {
-    const sk_object *found = NULL;
-    for (size_t i = 0; i < world->objects.count; i++) {
-        const sk_object *rule = world->objects.data[i];
-        if (!is_contact(rule)) continue;
-        const char *on = rule->common.plain.on;
-        if (on[0] && !sk_names_mean(on, body->name, body->groups)) continue;
-        if (!found || sk_object_number(rule, "more_substeps") > sk_object_number(found, "more_substeps")) found = rule;
-    }
-    return found;
-}
-
-/* How far the free particles of a body go in a step of dt, in the mean. */
-static void mean_way(const skein_world *world, const sk_body *body, double dt, double way[3]) {
-    const sk_particles *all = &world->particles;
-    size_t count = 0;
-    way[0] = way[1] = way[2] = 0;
-    for (size_t p = body->first_particle; p < body->first_particle + body->particle_count; p++) {
-        const sk_vec4 v = all->vector[SK_V][all->slot_of[p]];
-        if (all->pinned[p] || !(sk_dot(sk_xyz(v), sk_xyz(v)) < (real)1e12)) continue;
-        way[0] += (double)v.x, way[1] += (double)v.y, way[2] += (double)v.z;
-        count++;
-    }
-    for (int k = 0; k < 3 && count; k++) way[k] *= dt / (double)count;
-}
-
-/* How far a body's pins are led past its free particles, at most, m. */
-static double way_past(const skein_world *world, const sk_body *body, double dt) {
-    const sk_particles *all = &world->particles;
-    double mean[3], most = 0;
-    bool any = false;
-    for (size_t i = 0; i < world->led.count; i++) {
-        const sk_pin *pin = &world->led.data[i];
-        if (pin->particle - body->first_particle >= body->particle_count) continue;
-        if (!all->pinned[pin->particle] || !sk_particle_is_here(all, pin->particle)) continue;
-        if (!any) mean_way(world, body, dt, mean);
-        any = true;
-        const sk_vec4 x = all->vector[SK_X][all->slot_of[pin->particle]];
-        const double way[3] = {pin->place[0] - (double)x.x - mean[0], pin->place[1] - (double)x.y - mean[1], pin->place[2] - (double)x.z - mean[2]};
-        most = fmax(most, sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]));
-    }
-    return most;
-}
-
-/* How many substeps a body's pins ask for, and how many they may have. */
-static double wanted_by(const skein_world *world, const sk_object *object, double usual, double dt, double *most) {
-    const sk_object *rule = rule_of(world, &object->common.plain);
-    if (!rule) return 0;
-    const double own = sk_object_number(object, "contact.thickness"), thickness = own > 0 ? own : sk_object_number(rule, "thickness");
-    const double its_most = usual * sk_object_number(rule, "more_substeps");
-    *most = fmax(*most, its_most);
-    return fmin(way_past(world, object->as.body, dt) / (fast * thickness), its_most);
+static bool acts_on(const sk_object *rule, const sk_object *body) {
+    const char *on = rule->common.plain.on;
+    return !on[0] || sk_names_mean(on, body->common.plain.name, body->common.plain.groups);
 }
 
 /* Whether a moving frame takes a body's free particles along. */
@@ -87,20 +58,132 @@ static bool is_carried(const skein_world *world, const sk_common *body) {
     return false;
 }
 
+/* Whether a body has surfaces or rods, and is there, and no frame goes with it. */
+static bool may_come(const skein_world *world, const sk_object *object) {
+    if (object->category != SKEIN_BODY || !object->as.body->enabled || !object->as.body->particle_count) return false;
+    const bool has_features = object->as.body->triangle_count || object->body_type->shape == SKEIN_SHAPE_CHAIN;
+    return has_features && !is_carried(world, &object->common.plain);
+}
+
+static void look_at_particles(const sk_particles *all, const sk_body *body, comer *c) {
+    size_t free = 0;
+    for (int k = 0; k < 3; k++) c->low[k] = INFINITY, c->high[k] = -INFINITY;
+    for (size_t p = body->first_particle; p < body->first_particle + body->particle_count; p++) {
+        const sk_vec4 x = all->vector[SK_X][all->slot_of[p]], v = all->vector[SK_V][all->slot_of[p]];
+        const double at[3] = {(double)x.x, (double)x.y, (double)x.z};
+        for (int k = 0; k < 3; k++) c->low[k] = fmin(c->low[k], at[k]), c->high[k] = fmax(c->high[k], at[k]);
+        if (all->pinned[p] || !(sk_dot(sk_xyz(v), sk_xyz(v)) < (real)1e12)) continue; // or blown up
+        c->free[0] += (double)v.x, c->free[1] += (double)v.y, c->free[2] += (double)v.z;
+        free++;
+    }
+    for (int k = 0; k < 3; k++) {
+        c->all[k] = c->free[k] / (double)body->particle_count;
+        c->free[k] /= (double)(free ? free : 1);
+    }
+}
+
+static void look_at_pins(const skein_world *world, const sk_body *body, double dt, comer *c) {
+    const sk_particles *all = &world->particles;
+    for (size_t i = 0; i < world->led.count; i++) {
+        const sk_pin *pin = &world->led.data[i];
+        if (pin->particle - body->first_particle >= body->particle_count) continue;
+        if (!all->pinned[pin->particle] || !sk_particle_is_here(all, pin->particle)) continue;
+        const sk_vec4 x = all->vector[SK_X][all->slot_of[pin->particle]];
+        const double at[3] = {(double)x.x, (double)x.y, (double)x.z};
+        double square = 0;
+        for (int k = 0; k < 3; k++) {
+            const double v = (pin->place[k] - at[k]) / dt;
+            c->all[k] += v / (double)body->particle_count;
+            square += (v - c->free[k]) * (v - c->free[k]);
+        }
+        c->past = fmax(c->past, sqrt(square));
+    }
+}
+
+static comer comer_of(const skein_world *world, const sk_object *object, double dt) {
+    const sk_body *body = object->as.body;
+    comer c = {.object = object, .thickness = sk_object_number(object, "contact.thickness")};
+    look_at_particles(&world->particles, body, &c);
+    look_at_pins(world, body, dt, &c);
+    c.first = c.low[0] + fmin(0, soon * dt * c.all[0]);
+    c.last = c.high[0] + fmax(0, soon * dt * c.all[0]);
+    return c;
+}
+
+static double thickness_of(const comer *c, const sk_object *rule) {
+    return c->thickness > 0 ? c->thickness : sk_object_number(rule, "thickness");
+}
+
+/* When the boxes of two will be as near as that, s; INFINITY: never, if both go on as they do. */
+static double time_until(const comer *a, const comer *b, double near) {
+    double begin = 0, end = INFINITY;
+    for (int k = 0; k < 3; k++) {
+        const double speed = b->all[k] - a->all[k], least = a->low[k] - near - b->high[k], most = a->high[k] + near - b->low[k];
+        if (speed == 0 && (least > 0 || most < 0)) return INFINITY;
+        if (speed == 0) continue;
+        begin = fmax(begin, fmin(least / speed, most / speed));
+        end = fmin(end, fmax(least / speed, most / speed));
+    }
+    return begin <= end ? begin : INFINITY;
+}
+
+static double speed_between(const comer *a, const comer *b) {
+    const double v[3] = {b->all[0] - a->all[0], b->all[1] - a->all[1], b->all[2] - a->all[2]};
+    return sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+}
+
+/* How many substeps a rule wants in a step of dt for two bodies. */
+static double wanted_by_two(const sk_object *rule, const comer *a, const comer *b, double usual, double dt) {
+    const double thick[2] = {thickness_of(a, rule), thickness_of(b, rule)};
+    const double wanted = fmin(speed_between(a, b) * dt / (nearer * fmax(thick[0], thick[1])), usual * sk_object_number(rule, "more_substeps"));
+    if (!(wanted > usual)) return 0;
+    const double steps = floor(time_until(a, b, thick[0] + thick[1]) / dt);
+    if (!(steps < soon)) return 0;
+    const sk_common *one = &a->object->common.plain, *other = &b->object->common.plain;
+    const sk_force *force = rule->as.force;
+    if (sk_pairs_mean(force->type->meeting->ignored(force->params), one->name, one->groups, other->name, other->groups)) return 0;
+    return wanted * pow(shorter, steps);
+}
+
+static int compare_first(const void *a, const void *b) {
+    const comer *one = a, *other = b;
+    return (one->first > other->first) - (one->first < other->first);
+}
+
+/* How many substeps a rule wants for the bodies that it acts on, sorted by where they begin. */
+static double wanted_by(const sk_object *rule, const comer *body, size_t count, double usual, double dt) {
+    double wanted = 0, thickest = 0;
+    for (size_t i = 0; i < count; i++) thickest = fmax(thickest, thickness_of(&body[i], rule));
+    for (size_t a = 0; a < count; a++) {
+        if (!acts_on(rule, body[a].object)) continue;
+        const double by_pins = body[a].past * dt / (led * thickness_of(&body[a], rule));
+        wanted = fmax(wanted, fmin(by_pins, usual * sk_object_number(rule, "more_substeps")));
+        for (size_t b = a + 1; b < count && body[b].first <= body[a].last + 2 * thickest; b++)
+            if (acts_on(rule, body[b].object)) wanted = fmax(wanted, wanted_by_two(rule, &body[a], &body[b], usual, dt));
+    }
+    return wanted;
+}
+
 bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps) {
     *substeps = usual;
-    if (world->device || world->share || (!world->pins.count && !world->motions.count)) return true; // there all know the same number
-    bool meets = false;
-    for (size_t i = 0; i < world->objects.count; i++) meets |= is_contact(world->objects.data[i]);
-    if (!meets) return true;
-    if (!sk_world_lead(world, world->time + dt)) return false;
-    double wanted = 0, most = usual;
-    for (size_t i = 0; i < world->objects.count && world->led.count; i++) {
-        const sk_object *object = world->objects.data[i];
-        if (object->category == SKEIN_BODY && !is_carried(world, &object->common.plain))
-            wanted = fmax(wanted, wanted_by(world, object, usual, dt, &most));
+    if (world->device || world->share) return true; // there all know the same number
+    double most = 0, wanted = 0;
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (is_contact(world->objects.data[i])) most = fmax(most, usual * sk_object_number(world->objects.data[i], "more_substeps"));
+    if (!(most > usual)) return true;
+    comer *body = sk_allocate(&world->allocator, (world->objects.count + 1) * sizeof *body);
+    if (!body || ((world->pins.count || world->motions.count) && !sk_world_lead(world, world->time + dt))) {
+        sk_release(&world->allocator, body);
+        return false;
     }
+    size_t count = 0;
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (may_come(world, world->objects.data[i])) body[count++] = comer_of(world, world->objects.data[i], dt);
     world->led.count = 0;
+    if (count) qsort(body, count, sizeof *body, compare_first);
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (is_contact(world->objects.data[i])) wanted = fmax(wanted, wanted_by(world->objects.data[i], body, count, usual, dt));
+    sk_release(&world->allocator, body);
     const int some = 2 * ((usual + 7) / 8); // an even number stays one (plan_builder_correct.c)
     wanted = fmin(some * ceil(wanted / some), most);
     const double now = world->substep > 0 ? round(dt / (double)world->substep) : 0;

@@ -9,26 +9,12 @@
 #include "base/status.h"
 #include "contact/touch.h"
 
-static sk_word trimmed(const char *at, const char *end) {
-    while (at < end && *at == ' ') at++;
-    while (end > at && end[-1] == ' ') end--;
-    return (sk_word){at, (size_t)(end - at)};
-}
-
-/* The next pair; false at the end. What has no colon is a body or a group that does not meet itself. */
-static bool next_pair(const char **text, sk_word pair[2]) {
-    const char *at = *text, *end = at + strcspn(at, ","), *colon = memchr(at, ':', (size_t)(end - at));
-    if (!*at) return false;
-    pair[0] = trimmed(at, colon ? colon : end);
-    pair[1] = colon ? trimmed(colon + 1, end) : pair[0];
-    *text = end + (*end == ',');
-    return true;
-}
-
 skein_status sk_ignored_check(const char *text, skein_error *error) {
     sk_word pair[2];
-    for (const char *at = text, *next = text; next_pair(&next, pair); at = next) {
-        sk_word whole = trimmed(at, at + strcspn(at, ","));
+    for (const char *at = text, *next = text; sk_pairs_next(&next, pair); at = next) {
+        const char *list = at + strspn(at, " ");
+        if (*list == ',') continue;
+        sk_word whole = sk_names_next(&list, ",");
         const char *colon = memchr(whole.at, ':', whole.length);
         if (!colon) continue;
         int length = whole.length < 60 ? (int)whole.length : 60;
@@ -47,7 +33,7 @@ skein_status sk_ignored_check(const char *text, skein_error *error) {
 static size_t count_pairs(const char *text) {
     sk_word pair[2];
     size_t count = 0;
-    while (next_pair(&text, pair)) count++;
+    while (sk_pairs_next(&text, pair)) count++;
     return count;
 }
 
@@ -63,7 +49,7 @@ static size_t body_of(const sk_skin *skin, const sk_leaf *leaf, const sk_meeting
 static bool find_words(const char *text, const sk_meeting_body *body, uint8_t *words) {
     sk_word pair[2];
     bool any = false;
-    for (; next_pair(&text, pair); words++) {
+    for (; sk_pairs_next(&text, pair); words++) {
         *words = 0;
         for (int k = 0; k < 2; k++)
             if (sk_is_called(body->name, body->groups, pair[k])) *words |= (uint8_t)(1 << k);
