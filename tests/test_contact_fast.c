@@ -165,8 +165,9 @@ static void more_substeps_go_on_from_a_snapshot(void **state) {
     skein_world_destroy(world), skein_world_destroy(other), skein_world_destroy(later);
 }
 
-/* What is thrown at what: a sheet on the upper edge of one that is pinned, a jelly at one that hangs, a sheet on a jelly that lies there. */
-typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY } aim;
+/* What is thrown at what: a sheet on the upper edge of one that is pinned, a jelly at one that hangs, a sheet on a jelly that lies there or on a
+ * ball, a ball at one that hangs. */
+typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY, AT_A_BALL, A_BALL } aim;
 
 static void add_sheet(skein_world *world, bool irregular, const char *pins, double height, double tilt, double yaw, double speed) {
     const skein_setting *settings = SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("name", pins[0] ? "cloth" : "sheet"),
@@ -197,6 +198,15 @@ static skein_world *thrown(int threads, double more, const char *ignore, aim wha
     } else if (what == A_JELLY) {
         add_sheet(world, false, "top edge", 0, 90, 0, 0);
         add_jelly(world, 1, 0, 0.8, speed);
+    } else if (what == AT_A_BALL) {
+        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.6)), NULL));
+        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.4, 0)), NULL));
+        add_sheet(world, irregular, "", 0.5, 20, 30, speed);
+    } else if (what == A_BALL) {
+        add_sheet(world, false, "top corners", 0, 90, 0, 0);
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.1, 0.8), SKEIN_VEC3("motion.velocity", 0, 0, -speed)),
+                                     NULL));
     } else {
         OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.25)), NULL));
         add_jelly(world, 5, 0, 0, 0);
@@ -213,13 +223,14 @@ static void what_is_thrown_is_not_stretched(void **state) {
         double speed, most, without; /* of stretch, with more substeps and without */
     } cases[] = {
         {AT_AN_EDGE, false, 12, 0.4, 1}, {AT_AN_EDGE, true, 12, 0.4, 1}, {A_JELLY, false, 20, 0.4, 1},
-        {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8},
+        {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8}, {AT_A_BALL, false, 20, 0.3, 0.4}, {AT_A_BALL, true, 20, 0.5, 1},
+        {A_BALL, false, 12, 0.3, 1},
     };
     for (size_t c = 0; c < COUNT(cases); c++) {
         double most[2] = {0, 0};
         for (int more = 0; more < 2; more++) {
             skein_world *world = thrown(1, more ? 10 : 1, "", cases[c].what, cases[c].irregular, cases[c].speed);
-            for (int frame = 0; frame < 30; frame++) {
+            for (int frame = 0; frame < (cases[c].what == A_BALL ? 6 : 30); frame++) { // before the ball has gone too far
                 steps(world, 1, step_length);
                 const skein_statistics now = statistics_of(world);
                 if (more) assert_int_equal(now.crossings, 0);
@@ -260,9 +271,11 @@ static void what_comes_near_has_more_substeps(void **state) {
     static const struct {
         double more, speed;
         const char *ignore;
-    } none[] = {{1, 12, ""}, {10, 12, "cloth:jelly"}, {10, 1, ""}, {10, 12, "cloth, jelly:cloth"}, {10, -12, ""}};
+        aim what;
+    } none[] = {{1, 12, "", A_JELLY}, {10, 12, "cloth:jelly", A_JELLY}, {10, 1, "", A_JELLY},  {10, 12, "cloth, jelly:cloth", A_JELLY},
+                {10, -12, "", A_JELLY}, {10, 1, "", A_BALL}, {10, -12, "", A_BALL}, {1, 12, "", AT_A_BALL}};
     for (size_t c = 0; c < COUNT(none); c++) {
-        world = thrown(1, none[c].more, none[c].ignore, A_JELLY, false, none[c].speed);
+        world = thrown(1, none[c].more, none[c].ignore, none[c].what, false, none[c].speed);
         count_substeps(world, each, FRAMES);
         for (int frame = 0; frame < FRAMES; frame++)
             if (each[frame] != 10) fail_msg("case %zu, frame %d: %llu substeps", c, frame, (unsigned long long)each[frame]);

@@ -302,7 +302,7 @@
 #define SKEIN_CONTACT_THICKNESS "thickness" /* a number in m; how near surfaces come to each other; less where a body's own vertices are nearer as it was built */
 #define SKEIN_CONTACT_FRICTION "friction" /* a number; coefficient of friction between them */
 #define SKEIN_CONTACT_RECOVERY "recovery" /* a number in m/s; how fast surfaces that have gone through each other are led apart; 0: they stay so */
-#define SKEIN_CONTACT_MORE_SUBSTEPS "more_substeps" /* a whole number; xpbd and pbd, where bodies near each other by over half a thickness a substep, or pins are led past what hangs from them by over two: up to so many times as many; 1: never */
+#define SKEIN_CONTACT_MORE_SUBSTEPS "more_substeps" /* a whole number; xpbd and pbd, where bodies near others or colliders by over half a thickness a substep, or pins are led past what hangs from them by over two: up to so many times as many; 1: never */
 #define SKEIN_CONTACT_IGNORE "ignore" /* a text; pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: "cape:shirt, cape:cape" */
 
 /* ---- colliders ---- */

@@ -11,7 +11,7 @@ static const skein_field fields[] = {
     SK_REAL(sk_contact_params, recovery, "recovery", "m/s", 0.4, 0, 1e6,
             "how fast surfaces that have gone through each other are led apart; 0: they stay so"),
     SK_INT(sk_contact_params, more_substeps, "more_substeps", "", 10, 1, 100,
-           "xpbd and pbd, where bodies near each other by over half a thickness a substep, or pins are led past what hangs from them by over two: "
+           "xpbd and pbd, where bodies near others or colliders by over half a thickness a substep, or pins are led past what hangs from them by over two: "
            "up to so many times as many; 1: never"),
     SK_TEXT(sk_contact_params, ignore, "ignore", "",
             "pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),

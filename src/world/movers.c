@@ -33,8 +33,7 @@ static bool may_change(const sk_object *object) {
     return false;
 }
 
-/* Where a collider is now, and when the next step is over, in the frame that leads it. */
-static void find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]) {
+void sk_collider_find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]) {
     pose[0] = sk_collider_pose_unled(collider, world->time);
     pose[1] = sk_collider_pose_at(collider, world->time + dt);
     if (!collider->led) return;
@@ -61,16 +60,15 @@ static bool moves_on(const sk_object *object, const sk_pose pose[2]) {
     return collider->common->spin != 0 || way_of_vertices(collider) > 0 || (made && may_change(object));
 }
 
-/* How far apart the particles of a body and a collider are at a pose. */
-static double distance_at(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_sleeper *s) {
+double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body) {
     const sk_particles *all = &world->particles;
     double least = INFINITY;
-    for (size_t first = 0; first < s->body->particle_count; first += SK_LANES) {
+    for (size_t first = 0; first < body->particle_count; first += SK_LANES) {
         real p[3][SK_LANES] = {{0}};
         sk_sixteen_contacts contacts;
-        const size_t left = s->body->particle_count - first, lanes = left < SK_LANES ? left : SK_LANES;
+        const size_t left = body->particle_count - first, lanes = left < SK_LANES ? left : SK_LANES;
         for (size_t l = 0; l < SK_LANES; l++) { // the first again where there is nobody
-            const sk_vec4 x = all->vector[SK_X][all->slot_of[s->body->first_particle + first + (l < lanes ? l : 0)]];
+            const sk_vec4 x = all->vector[SK_X][all->slot_of[body->first_particle + first + (l < lanes ? l : 0)]];
             p[0][l] = x.x, p[1][l] = x.y, p[2][l] = x.z;
         }
         sk_probe_sixteen_of[world->isa](collider, pose, p, &contacts);
@@ -98,14 +96,14 @@ static double way_between(const sk_pose *a, const sk_pose *b, const sk_sleeper *
     return sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) + sqrt(turned) * reach_of(a, s);
 }
 
-/* Whether all of a body's box is away from a collider. Not known where its distance is that of a formula, which is none. */
-static bool is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_sleeper *s, double clear) {
+bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
+                        double clear) {
     real middle[3][SK_LANES];
     double half = 0;
     sk_sixteen_contacts contacts;
     for (int k = 0; k < 3; k++) {
-        half += pow((double)(s->high[k] - s->low[k]) / 2, 2);
-        for (int l = 0; l < SK_LANES; l++) middle[k][l] = (s->low[k] + s->high[k]) / 2;
+        half += pow((double)(high[k] - low[k]) / 2, 2);
+        for (int l = 0; l < SK_LANES; l++) middle[k][l] = (low[k] + high[k]) / 2;
     }
     if (collider->type->making && !collider->type->take) return false;
     sk_probe_sixteen_of[world->isa](collider, pose, middle, &contacts);
@@ -118,7 +116,9 @@ static bool is_met_by(const skein_world *world, const sk_collider *collider, con
     const double spins = dt * fabs(collider->common->spin) * reach_of(&pose[0], s);
     const double clear = 2 * collider->common->thickness + way_between(&pose[0], &pose[1], s) + spins + way_of_vertices(collider);
     for (int i = 0; i < 2; i++)
-        if (!is_far(world, collider, &pose[i], s, clear) && !(distance_at(world, collider, &pose[i], s) > clear)) return true;
+        if (!sk_collider_is_far(world, collider, &pose[i], s->low, s->high, clear) &&
+            !(sk_collider_distance(world, collider, &pose[i], s->body) > clear))
+            return true;
     return false;
 }
 
@@ -129,7 +129,7 @@ bool sk_is_met(const skein_world *world, const sk_sleeper *s, double dt) {
         if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled) continue;
         const char *on = object->as.collider->common->on;
         if (on[0] && !sk_names_mean(on, s->common->name, s->common->groups)) continue;
-        find_poses(world, object->as.collider, dt, pose);
+        sk_collider_find_poses(world, object->as.collider, dt, pose);
         if (moves_on(object, pose) && is_met_by(world, object->as.collider, pose, s, dt)) return true;
     }
     return false;

@@ -51,6 +51,14 @@ void sk_box_widen(const sk_particles *all, const sk_body *body, real ahead, real
 
 /* ---- movers.c ---- */
 
+/* Where a collider is now, and when the next step is over, in the frame that leads it. */
+void sk_collider_find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]);
+/* How far apart the particles of a body and a collider are at a pose. */
+double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body);
+/* Whether all of a box is farther from a collider than `clear`. Not known where its distance is that of a formula, which is none. */
+bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
+                        double clear);
+
 /* Whether a rule, a constraint of the program's or a motion moves a body whatever it does itself. */
 bool sk_is_driven(const skein_world *world, const sk_sleeper *s);
 /* Whether a collider that moves is near a body in the next step of dt. Motions have been looked at (sk_world_look_ahead). */
