@@ -136,6 +136,12 @@ static double wanted_at(const sk_object *rule, const double a[3], const double b
     return wanted > usual ? fmin(wanted, usual * sk_object_number(rule, "more_substeps")) : 0;
 }
 
+/* How many there have to be now, so that there are enough so many steps ahead. */
+static double wanted_before(double wanted, double steps) {
+    while (steps-- > 0) wanted *= shorter;
+    return wanted;
+}
+
 /* How many it wants for two bodies. */
 static double wanted_by_two(const sk_object *rule, const comer *a, const comer *b, double usual, double dt) {
     const double thick[2] = {thickness_of(a, rule), thickness_of(b, rule)};
@@ -146,7 +152,7 @@ static double wanted_by_two(const sk_object *rule, const comer *a, const comer *
     const sk_common *one = &a->object->common.plain, *other = &b->object->common.plain;
     const sk_force *force = rule->as.force;
     if (sk_pairs_mean(force->type->meeting->ignored(force->params), one->name, one->groups, other->name, other->groups)) return 0;
-    return wanted * pow(shorter, steps);
+    return wanted_before(wanted, steps);
 }
 
 /* Whether a collider may stop but a part of a body: what falls flat on the ground is stopped as a whole. Formulas do not tell how far they are,
@@ -170,10 +176,10 @@ static double wanted_by_collider(const skein_world *world, const sk_object *rule
     const sk_vec3 past = sk_sub(way, (sk_vec3){(real)(dt * c->all[0]), (real)(dt * c->all[1]), (real)(dt * c->all[2])});
     const double clear = (double)sk_length(past) + thickness + collider->common->thickness;
     sk_pose at = pose[0];
-    for (double steps = 0; steps < soon && wanted * pow(shorter, steps) > usual; steps++, at.position = sk_add(at.position, past))
+    for (double steps = 0; steps < soon && wanted_before(wanted, steps) > usual; steps++, at.position = sk_add(at.position, past))
         if (!sk_collider_is_far(world, collider, &at, c->low, c->high, clear) &&
             !(sk_collider_distance(world, collider, &at, c->object->as.body) > clear))
-            return wanted * pow(shorter, steps);
+            return wanted_before(wanted, steps);
     return 0;
 }
 
