@@ -4,7 +4,7 @@
  * goes on, and these are asked once a substep. So substeps are to be so short that nobody comes far in one:
  *   bodies   that come near each other, by half a thickness. Of 60 that were thrown at 3 to 20 m/s (sheets of 30 x 30 and 41 x 41, half of them
  *            irregular, on the upper edge of one that is pinned; a jelly at a hung sheet; sheets on a jelly) 30 had edges of more than
- *            twice their length in substeps of a 600th of a second, and three have; frames took 11.2 ms in the mean, and take 11.1, for what
+ *            twice their length in substeps of a 600th of a second, and two have; frames took 11.2 ms in the mean, and take 11.1, for what
  *            comes slowly is near fewer. By a whole thickness: nine; by a third: two, and worst frames a fifth longer. In five substeps 47, and eight.
  *            The same with colliders, but planes, for what falls flat is stopped as a whole: of 40 sheets that were thrown at balls and boxes 13 were
  *            torn, and none is; of 20 hung ones at which balls were thrown 12, and six.
