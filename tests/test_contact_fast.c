@@ -117,7 +117,7 @@ static void what_is_led_fast_has_more_substeps(void **state) {
         bool meets;
         uint64_t least, most; /* substeps */
     } cases[] = {
-        {10, 10, 0.005, true, 16, 36}, // 17 past what is at rest, and twice as many past what flies the other way: of four each
+        {10, 10, 0.005, true, 18, 36}, // 17 past what is at rest, and twice as many past what flies the other way: of four each
         {10, 1, 0.005, true, 10, 10},  // never
         {4, 2, 0.0005, true, 20, 20}, // as many as it may
         {10, 10, 0.005, false, 10, 10}, // nothing meets

@@ -108,7 +108,7 @@ typedef struct sk_touch {
     size_t searched_since; /* searches since the last one for all */
     size_t lost_since; /* how many have been lost since then, each as often as it was */
     sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
-    sk_vec3 common;  /* what pins go together in this one, or without pins all (bound.c); */
+    sk_vec3 common;  /* and what all go together in this one, or pins (bound.c) */
     real longest;    /* m: of the ways in this substep, less what all go together; */
     real farthest;   /* and with that, of those that have a course */
     sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */

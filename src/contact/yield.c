@@ -1,7 +1,7 @@
 /* Who stands in the way of pins, and yields to them.
  *
- * What is pinned or led goes all of its way in a substep. In the frame of a bound, which goes as pins do in the mean, it may go by more
- * than there is room for where pins go different ways: one edge is led up through what hangs from others. Then no share of
+ * What is pinned or led goes all of its way in a substep. In the frame of a bound it may go by more
+ * than there is room for: one edge is led up through what hangs from another. Then no share of
  * their ways keeps corners off it, for with none they stand, and are passed. So they stand elsewhere: moved along the pair's
  * normal, until there is room; and so, in turn, do those in the way of these. Only that is moved which must be: all others stay
  * in the frame, so that what slides over a pinned border goes on.
