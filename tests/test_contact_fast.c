@@ -166,8 +166,8 @@ static void more_substeps_go_on_from_a_snapshot(void **state) {
 }
 
 /* What is thrown at what: a sheet on the upper edge of one that is pinned, a jelly at one that hangs, a sheet on a jelly that lies there or on a
- * ball, a ball at one that hangs. */
-typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY, AT_A_BALL, A_BALL } aim;
+ * ball, a ball at one that hangs, by its own motion or as a motion leads it. */
+typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY, AT_A_BALL, A_BALL, A_LED_BALL } aim;
 
 static void add_sheet(skein_world *world, bool irregular, const char *pins, double height, double tilt, double yaw, double speed) {
     const skein_setting *settings = SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("name", pins[0] ? "cloth" : "sheet"),
@@ -202,6 +202,16 @@ static skein_world *thrown(int threads, double more, const char *ignore, aim wha
         OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.6)), NULL));
         OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.4, 0)), NULL));
         add_sheet(world, irregular, "", 0.5, 20, 30, speed);
+    } else if (what == A_LED_BALL) {
+        add_sheet(world, false, "top corners", 0, 90, 0, 0);
+        OK(world, skein_body_add(world, "rope", NULL,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "anchor"), SKEIN_REAL("count", 2), SKEIN_VEC3("from", 9, 9, 9), SKEIN_VEC3("to", 9.1, 9, 9),
+                                                SKEIN_TEXT("pins", "first, last")),
+                                 NULL));
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.1, 0.8)), NULL));
+        OK(world, skein_motion_add(world, "translate", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "anchor"), SKEIN_TEXT("colliders", "ball"), SKEIN_VEC3("velocity", 0, 0, -speed)), NULL));
     } else if (what == A_BALL) {
         add_sheet(world, false, "top corners", 0, 90, 0, 0);
         OK(world, skein_collider_add(world, "sphere",
@@ -224,13 +234,13 @@ static void what_is_thrown_is_not_stretched(void **state) {
     } cases[] = {
         {AT_AN_EDGE, false, 12, 0.4, 1}, {AT_AN_EDGE, true, 12, 0.4, 1}, {A_JELLY, false, 20, 0.4, 1},
         {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8}, {AT_A_BALL, false, 20, 0.3, 0.4}, {AT_A_BALL, true, 20, 0.5, 1},
-        {A_BALL, false, 12, 0.3, 1},
+        {A_BALL, false, 12, 0.3, 1}, {A_LED_BALL, false, 12, 0.3, 1},
     };
     for (size_t c = 0; c < COUNT(cases); c++) {
         double most[2] = {0, 0};
         for (int more = 0; more < 2; more++) {
             skein_world *world = thrown(1, more ? 10 : 1, "", cases[c].what, cases[c].irregular, cases[c].speed);
-            for (int frame = 0; frame < (cases[c].what == A_BALL ? 6 : 30); frame++) { // before the ball has gone too far
+            for (int frame = 0; frame < (cases[c].what >= A_BALL ? 6 : 30); frame++) { // before the ball has gone too far
                 steps(world, 1, step_length);
                 const skein_statistics now = statistics_of(world);
                 if (more) assert_int_equal(now.crossings, 0);

@@ -21,7 +21,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-#include "world/sleep.h"
+#include "world/nearness.h"
 
 /* Thicknesses in a substep: that a pin may be led by, and that bodies may come nearer. */
 static const double led = 2, nearer = 0.5;
@@ -155,14 +155,13 @@ static double wanted_by_two(const sk_object *rule, const comer *a, const comer *
     return wanted_before(wanted, steps);
 }
 
-/* Whether a collider may stop but a part of a body: what falls flat on the ground is stopped as a whole. Formulas do not tell how far they are,
- * and frames that lead colliders carry bodies, too. */
+/* Whether a collider may stop but a part of a body: what falls flat on the ground is stopped as a whole. Formulas do not tell how far they are. */
 static bool may_be_met(const sk_object *object) {
     if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled) return false;
     const sk_collider *collider = object->as.collider;
     skein_shape shape = {.sort = SKEIN_SHAPE_SURFACE};
     if (collider->type->shape) collider->type->shape(collider->params, &shape);
-    return shape.sort != SKEIN_SHAPE_PLANE && !collider->led && !(collider->type->making && !collider->type->take);
+    return shape.sort != SKEIN_SHAPE_PLANE && !(collider->type->making && !collider->type->take);
 }
 
 /* How many it wants for a body that nears a collider at these poses, now and when the step is over: this goes to where the body is, as both go
@@ -219,6 +218,23 @@ static double wanted_by(const skein_world *world, const sk_object *rule, const c
     return wanted;
 }
 
+/* How many all rules want; body: room for all bodies. */
+static double wanted_by_all(const skein_world *world, comer *body, double usual, double dt) {
+    size_t bodies = 0, colliders = 0, count = 0;
+    for (size_t i = 0; i < world->objects.count; i++) {
+        bodies += may_come(world, world->objects.data[i]);
+        colliders += may_be_met(world->objects.data[i]);
+    }
+    if (bodies < 2 && !colliders && !world->led.count) return 0; // nobody comes
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (may_come(world, world->objects.data[i])) body[count++] = comer_of(world, world->objects.data[i], dt);
+    if (count) qsort(body, count, sizeof *body, compare_first);
+    double wanted = 0;
+    for (size_t i = 0; i < world->objects.count; i++)
+        if (is_contact(world->objects.data[i])) wanted = fmax(wanted, wanted_by(world, world->objects.data[i], body, count, usual, dt));
+    return wanted;
+}
+
 bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps) {
     *substeps = usual;
     if (world->device || world->share) return true; // there all know the same number
@@ -226,19 +242,13 @@ bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps
     for (size_t i = 0; i < world->objects.count; i++)
         if (is_contact(world->objects.data[i])) most = fmax(most, usual * sk_object_number(world->objects.data[i], "more_substeps"));
     if (!(most > usual)) return true;
+    const bool leads = world->pins.count || world->motions.count;
     comer *body = sk_allocate(&world->allocator, (world->objects.count + 1) * sizeof *body);
-    if (!body || ((world->pins.count || world->motions.count) && !sk_world_lead(world, world->time + dt))) {
-        sk_release(&world->allocator, body);
-        return false;
-    }
-    size_t count = 0;
-    for (size_t i = 0; i < world->objects.count; i++)
-        if (may_come(world, world->objects.data[i])) body[count++] = comer_of(world, world->objects.data[i], dt);
+    const bool good = body && (!leads || sk_world_lead(world, world->time + dt)) && sk_world_look_ahead(world, dt);
+    if (good) wanted = wanted_by_all(world, body, usual, dt);
     world->led.count = 0;
-    if (count) qsort(body, count, sizeof *body, compare_first);
-    for (size_t i = 0; i < world->objects.count; i++)
-        if (is_contact(world->objects.data[i])) wanted = fmax(wanted, wanted_by(world, world->objects.data[i], body, count, usual, dt));
     sk_release(&world->allocator, body);
+    if (!good) return false;
     const int some = 2 * ((usual + 7) / 8); // an even number stays one (plan_builder_correct.c)
     wanted = fmin(some * ceil(wanted / some), most);
     const double now = world->substep > 0 ? round(dt / (double)world->substep) : 0;

@@ -33,17 +33,6 @@ static bool may_change(const sk_object *object) {
     return false;
 }
 
-void sk_collider_find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]) {
-    pose[0] = sk_collider_pose_unled(collider, world->time);
-    pose[1] = sk_collider_pose_at(collider, world->time + dt);
-    if (!collider->led) return;
-    sk_collider then = *collider;
-    pose[0] = sk_collider_pose_at(collider, world->time);
-    then.travel.moving = false;
-    then.frame = sk_world_frame_ahead(world, collider->common->name);
-    pose[1] = sk_collider_pose_at(&then, world->time + dt);
-}
-
 /* How far the vertices of a mesh are led in the next step, at most, m. */
 static double way_of_vertices(const sk_collider *collider) {
     const sk_trimesh *m = collider->type->surface ? collider->type->surface(collider->params) : NULL;
@@ -58,23 +47,6 @@ static bool moves_on(const sk_object *object, const sk_pose pose[2]) {
     if (memcmp(pose[0].rotation, pose[1].rotation, sizeof pose[0].rotation) != 0) return true;
     if (memcmp(&pose[0].axis, &pose[1].axis, sizeof pose[0].axis) != 0) return true;
     return collider->common->spin != 0 || way_of_vertices(collider) > 0 || (made && may_change(object));
-}
-
-double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body) {
-    const sk_particles *all = &world->particles;
-    double least = INFINITY;
-    for (size_t first = 0; first < body->particle_count; first += SK_LANES) {
-        real p[3][SK_LANES] = {{0}};
-        sk_sixteen_contacts contacts;
-        const size_t left = body->particle_count - first, lanes = left < SK_LANES ? left : SK_LANES;
-        for (size_t l = 0; l < SK_LANES; l++) { // the first again where there is nobody
-            const sk_vec4 x = all->vector[SK_X][all->slot_of[body->first_particle + first + (l < lanes ? l : 0)]];
-            p[0][l] = x.x, p[1][l] = x.y, p[2][l] = x.z;
-        }
-        sk_probe_sixteen_of[world->isa](collider, pose, p, &contacts);
-        for (size_t l = 0; l < lanes; l++) least = fmin(least, (double)contacts.distance[l]);
-    }
-    return least;
 }
 
 /* The farthest point of a body's box from a pose. */
@@ -94,20 +66,6 @@ static double way_between(const sk_pose *a, const sk_pose *b, const sk_sleeper *
     for (int i = 0; i < 9; i++) turned += pow((double)b->rotation[i] - (double)a->rotation[i], 2);
     for (int k = 0; k < 3; k++) turned += axis[k] * axis[k];
     return sqrt(way[0] * way[0] + way[1] * way[1] + way[2] * way[2]) + sqrt(turned) * reach_of(a, s);
-}
-
-bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
-                        double clear) {
-    real middle[3][SK_LANES];
-    double half = 0;
-    sk_sixteen_contacts contacts;
-    for (int k = 0; k < 3; k++) {
-        half += pow((double)(high[k] - low[k]) / 2, 2);
-        for (int l = 0; l < SK_LANES; l++) middle[k][l] = (low[k] + high[k]) / 2;
-    }
-    if (collider->type->making && !collider->type->take) return false;
-    sk_probe_sixteen_of[world->isa](collider, pose, middle, &contacts);
-    return (double)contacts.distance[0] > sqrt(half) + clear;
 }
 
 /* What is met on the way from one pose to the other is no farther from one of them than half that way. Vertices that are led are

@@ -7,22 +7,6 @@
 #include "base/union_find.h"
 #include "world/sleep.h"
 
-void sk_box_widen(const sk_particles *all, const sk_body *body, real ahead, real low[3], real high[3]) {
-    for (size_t i = 0; i < body->particle_count; i++) {
-        const size_t slot = all->slot_of[body->first_particle + i];
-        const sk_vec4 x = all->vector[SK_X][slot], v = all->vector[SK_V][slot];
-        const real at[3] = {x.x, x.y, x.z}, way[3] = {ahead * v.x, ahead * v.y, ahead * v.z};
-        for (int k = 0; k < 3; k++) {
-            low[k] = sk_min(low[k], sk_min(at[k], at[k] + way[k]));
-            high[k] = sk_max(high[k], sk_max(at[k], at[k] + way[k]));
-        }
-    }
-}
-
-void sk_box_begin(real low[3], real high[3]) {
-    for (int k = 0; k < 3; k++) low[k] = SK_REAL_MAX, high[k] = -SK_REAL_MAX;
-}
-
 /* How near bodies have to come to touch: contact's thickness, or a rule's reach. Below 0 where nobody meets anybody. */
 static real reach_of_rules(const skein_world *world) {
     double reach = -1;

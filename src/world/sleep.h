@@ -3,7 +3,7 @@
 #ifndef SK_WORLD_SLEEP_H
 #define SK_WORLD_SLEEP_H
 
-#include "world/world.h"
+#include "world/nearness.h"
 
 /* A body that is there, and the box around it. */
 typedef struct sk_sleeper {
@@ -45,19 +45,8 @@ void sk_neighbours_release(sk_neighbours *all);
 /* Marks the islands of those who are awake; and whether a body is in one of these. */
 void sk_neighbours_mark(const sk_neighbours *all);
 bool sk_is_disturbed(const sk_neighbours *all, const sk_sleeper *s);
-/* Widens a box by where a body is, and by where it will be so many seconds ahead; and one that has nothing in it. */
-void sk_box_begin(real low[3], real high[3]);
-void sk_box_widen(const sk_particles *all, const sk_body *body, real ahead, real low[3], real high[3]);
 
 /* ---- movers.c ---- */
-
-/* Where a collider is now, and when the next step is over, in the frame that leads it. */
-void sk_collider_find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]);
-/* How far apart the particles of a body and a collider are at a pose. */
-double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body);
-/* Whether all of a box is farther from a collider than `clear`. Not known where its distance is that of a formula, which is none. */
-bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
-                        double clear);
 
 /* Whether a rule, a constraint of the program's or a motion moves a body whatever it does itself. */
 bool sk_is_driven(const skein_world *world, const sk_sleeper *s);
