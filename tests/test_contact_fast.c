@@ -2,6 +2,7 @@
  * thrown at something. Nothing goes through anything, velocities are those with which places change, and edges keep their length. */
 #include "crossings.h"
 #include "irregular.h"
+#include "sanitized.h"
 
 static const double step_length = 1.0 / 60;
 enum { SIDE = 41, LED = SIDE * (SIDE / 2) + SIDE / 2 };
@@ -236,7 +237,7 @@ static void what_is_thrown_is_not_stretched(void **state) {
         {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8}, {AT_A_BALL, false, 20, 0.3, 0.4}, {AT_A_BALL, true, 20, 0.5, 1},
         {A_BALL, false, 12, 0.3, 1}, {A_LED_BALL, false, 12, 0.3, 1},
     };
-    for (size_t c = 0; c < COUNT(cases); c++) {
+    for (size_t c = SANITIZED ? COUNT(cases) - 2 : 0; c < COUNT(cases); c++) {
         double most[2] = {0, 0};
         for (int more = 0; more < 2; more++) {
             skein_world *world = thrown(1, more ? 10 : 1, "", cases[c].what, cases[c].irregular, cases[c].speed);
@@ -264,7 +265,7 @@ static void throw_dice(skein_world *world, double mass, double size, const doubl
 /* In the frame of what flies by, its pins came up against the curtain: it was driven through itself, by 4 to 845 edges. */
 static void a_curtain_stays_beside_its_pins(void **state) {
     (void)state;
-    for (int which = 0; which < 2; which++) {
+    for (int which = 0; which < (SANITIZED ? 1 : 2); which++) {
         skein_world *world = new_world("xpbd", 10);
         add_gravity(world);
         OK(world, skein_force_add(world, "contact", NULL, NULL));
