@@ -432,7 +432,6 @@ static bool bound(sk_touch *touch, sk_run *run, const sk_op *op, bool solved) {
     const sk_vec4 *x = run->vector[SK_X];
     const bool all_out = sk_spread_is_all_out(&touch->spread) && !sk_pairs_kept(touch), some_out = touch->spread.out_count > 0;
     bool lost = all_out;
-    if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
     if (all_out && stay_all_out(touch, x, op)) {
         if (touch->before != touch->copied) touch->before = NULL; // the method keeps it no longer
         return true;
@@ -471,6 +470,7 @@ void sk_touch_bound(sk_run *run, const sk_op *op, size_t from, size_t end) {
     sk_touch *touch = force->state;
     if (!touch) return;
     if (touch->found) {
+        if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
         touch->followed = bound(touch, run, op, true);
         touch->start_is_kept = op->source[2] != SK_NONE;
         touch->frame_step = sk_sub(touch->shift[1], touch->shift[0]);

@@ -400,7 +400,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
 
 /* ---- the kind ---- */
 
-enum { VERTEX_ARRAYS = 40 };
+enum { VERTEX_ARRAYS = 48 };
 
 /* All arrays by vertex, edge, triangle or leaf, with the sizes of their elements. */
 static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *count) {
@@ -414,6 +414,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
+    LIST(faces.block, vertices / SK_LANES + 1), LIST(faces.plane, vertices);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
@@ -474,6 +475,8 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_release(allocator, touch->press.pair.data);
     sk_release(allocator, touch->press.now.data);
     sk_release(allocator, touch->partner.data);
+    sk_release(allocator, touch->faces.collider);
+    sk_release(allocator, touch->faces.near.data);
     sk_release(allocator, touch);
     force->state = NULL;
 }
@@ -502,6 +505,7 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     touch->isa = isa;
     touch->alone = parts->rule_count == 1;
     touch->start_is_kept = false; // until a bound says so
+    if (!sk_faces_take(&touch->faces, allocator, parts)) return false;
     uint64_t shape = shape_of(force, parts);
     if (touch->p && touch->shape == shape) return true;
     release_vertices(touch, allocator);
@@ -552,6 +556,7 @@ static const sk_meeting meeting = {
     .push_on = {SK_ANY_ISA(sk_touch_push_on)},
     .hold = {SK_ANY_ISA(sk_touch_hold)},
     .bound = {SK_ANY_ISA(sk_touch_bound)},
+    .faces = {SK_ANY_ISA(sk_touch_push_faces)},
     .near = {SK_ANY_ISA(sk_press_begin)},
     .press = {SK_ANY_ISA(sk_press_force)},
     .diagonal = {SK_ANY_ISA(sk_press_diagonal)},

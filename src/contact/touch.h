@@ -22,6 +22,7 @@
 
 #include "contact/search/boxes.h"
 #include "contact/calm.h"
+#include "contact/faces.h"
 #include "contact/pairs.h"
 #include "contact/press.h"
 #include "contact/skin.h"
@@ -186,6 +187,7 @@ typedef struct sk_touch {
     uint64_t searches, given_up; /* how often it searched, and gave up: */
     uint64_t told;               /* of these the world knows; */
     bool asked_crowded, told_crowded; /* whether a body of this skin is too thick for its edges; and of one */
+    sk_faces faces;
 } sk_touch;
 
 typedef struct sk_contact_params {
@@ -286,6 +288,8 @@ void sk_touch_set_thickness(const sk_touch *touch, sk_pairs *pairs, size_t first
 sk_op_kernel sk_touch_push;
 /* The same in the midst of limits, which goes on with a push: nothing is led. */
 sk_op_kernel sk_touch_push_on;
+/* Pushes one off a collider, of X, and of V if that is the op's second source. */
+void sk_touch_push_face(sk_touch *touch, const sk_run *run, const sk_op *op, const sk_face *face);
 /* Where an implicit solve has pressed apart what is near: leads apart what goes through each other, and no more. */
 sk_op_kernel sk_touch_lead;
 
@@ -299,6 +303,14 @@ sk_op_kernel sk_touch_hold;
 bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least, bool all);
 /* Looks for those that are lost, on their ways: they are wild from now on. */
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator);
+
+/* ---- faces.c ---- */
+
+/* Takes over which colliders there are; false when there is no memory. */
+bool sk_faces_take(sk_faces *faces, sk_allocator *allocator, const sk_meeting_parts *parts);
+/* Pushes edges and triangles out of colliders: with a coefficient of 1 those that are near now, else those that were where the last
+ * substep ended. */
+sk_op_kernel sk_touch_push_faces;
 
 /* ---- impact.c ---- */
 

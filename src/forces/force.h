@@ -36,6 +36,8 @@ typedef struct sk_meeting_parts {
     size_t triangle_count, edge_count, body_count;
     uint64_t arrangement; /* changes whenever any of this, or which particles take part, may have changed */
     size_t rule_count;    /* how many rules use these parts */
+    struct sk_collider *const *collider;
+    size_t collider_count;
 } sk_meeting_parts;
 
 typedef struct sk_force sk_force;
@@ -46,6 +48,8 @@ typedef struct sk_force sk_force;
  *           solve's filter S, so that it goes on with the others
  *   push    with the limits: moves X, and changes V to match if its second source is V
  *   lead    instead of a push, where a solve has pressed apart what is near: leads apart what is through each other
+ *   faces   before a push, and while limits are swept: moves X so that colliders hold what lies between particles, too, and changes V as a
+ *           push does; with a coefficient of 1 it finds what that is, else it is what it was in the last substep
  *   bound   last: stops vertices before they would pass a surface, and changes V to match
  * They do not declare which slots they reach, and run on one thread. An implicit solve has these besides:
  *   near             finds what presses each other in it, as X is when the substep begins
@@ -53,7 +57,7 @@ typedef struct sk_force sk_force;
  *   diagonal, apply  their part of the matrix, as of forces that depend on place (sk_force_type); the products are those
  *                    of the matrix whose diagonal was asked for last */
 typedef struct sk_meeting {
-    sk_kernels begin, hold, push, push_on, lead, bound;
+    sk_kernels begin, hold, push, push_on, lead, bound, faces;
     sk_kernels near, press, diagonal, apply;
     /* Makes the force's `state` for the ops, if there is none for these parts. False: no memory. */
     bool (*prepare)(sk_force *force, sk_allocator *allocator, const sk_particles *particles,

@@ -124,7 +124,16 @@ typedef enum sk_contact_sort {
 } sk_contact_sort;
 /* An op for each collider. An update reads X0 and V0, the state before the substep's corrections. */
 void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort);
-typedef enum sk_meeting_sort { SK_MEETING_BEGIN, SK_MEETING_HOLD, SK_MEETING_PUSH, SK_MEETING_PUSH_ON, SK_MEETING_LEAD, SK_MEETING_BOUND } sk_meeting_sort;
+typedef enum sk_meeting_sort {
+    SK_MEETING_BEGIN,
+    SK_MEETING_HOLD,
+    SK_MEETING_PUSH,
+    SK_MEETING_PUSH_ON,
+    SK_MEETING_LEAD,
+    SK_MEETING_FACES,
+    SK_MEETING_FACES_AGAIN, /* those that were found where the last substep ended */
+    SK_MEETING_BOUND
+} sk_meeting_sort;
 /* An op for each rule of contact between surfaces. The other functions here call it: a repeat of substeps begins and
  * ends with such ops, and the ops that push come with the limits. */
 void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector velocity);

@@ -147,6 +147,9 @@ static void write_pushes(sk_plan_builder *builder, bool (*takes_part)(const sk_b
         if (first) write_find_held(builder, rules->batches.data[i]);
         else write_hold(builder, rules->batches.data[i]);
     }
+    builder->strained = &rules->strained;
+    if (sk_writes_contacts(rules)) sk_write_meetings(builder, SK_MEETING_FACES_AGAIN, SK_NONE);
+    builder->strained = NULL;
 }
 
 /* How many more sweeps the largest batch of firm edges has. */
@@ -228,6 +231,7 @@ void sk_write_limits(sk_plan_builder *builder, sk_vector velocity) {
                                    .rule = rules->leashes,
                                    .label = "leashes",
                                    .end = builder->slot_count});
+    if (sk_writes_contacts(rules)) sk_write_meetings(builder, SK_MEETING_FACES, velocity);
     sk_write_meetings(builder, builder->presses ? SK_MEETING_LEAD : SK_MEETING_PUSH, velocity);
 }
 

@@ -31,13 +31,15 @@ void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector
         const sk_force *force = builder->rules->forces.data[i];
         if (!sk_meets(force)) continue;
         const sk_meeting *meeting = force->type->meeting;
-        const bool asks = sort == SK_MEETING_BOUND && keeps_start(builder);
-        const sk_kernels *kernels[] = {&meeting->begin, &meeting->hold, &meeting->push, &meeting->push_on, &meeting->lead, &meeting->bound};
+        const bool asks = sort >= SK_MEETING_FACES && keeps_start(builder);
+        const sk_kernels *kernels[] = {&meeting->begin, &meeting->hold, &meeting->push, &meeting->push_on, &meeting->lead,
+                                       &meeting->faces, &meeting->faces, &meeting->bound};
         sk_add_op(builder, (sk_op){.kind = SK_OP_MEET,
                                    .order = SK_ORDERED,
                                    .kernel = kernels[sort]->version[builder->isa],
                                    .dst = sort == SK_MEETING_BEGIN ? SK_NONE : SK_X,
                                    .source = {SK_X, velocity, asks ? SK_X0 : SK_NONE},
+                                   .coefficient = {sort == SK_MEETING_FACES},
                                    .rule = force,
                                    .label = force->label,
                                    .end = builder->slot_count});

@@ -109,7 +109,9 @@ static bool list_parts(skein_world *world, size_t rules, meeting_lists *l) {
                                   .body = l->bodies,
                                   .body_count = l->bodies ? list_bodies(world, l->bodies) : 0,
                                   .arrangement = world->arrangement,
-                                  .rule_count = rules};
+                                  .rule_count = rules,
+                                  .collider = world->rules.colliders.data,
+                                  .collider_count = world->rules.colliders.count};
     if (good && l->bodies) return true;
     release_lists(world, l);
     return false;

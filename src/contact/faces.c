@@ -1,0 +1,247 @@
+/* Colliders against what lies between particles. Colliders meet particles (colliders/contact.c): a corner of a box, an edge or a small ball would
+ * go in between. So edges and triangles are kept off spheres, capsules and boxes, too.
+ *
+ *      o               o        Along an edge the distance f from a convex solid is a convex function: above its tangents, of which the derivative at
+ *       \___       ___/         a place is one, n . e. If they fall towards each other at the ends, the nearest place is in between, and not
+ *        \  \__f__/  /          lower than where they meet: there is looked next, until that is so near that it is as good (Kelley's cutting
+ *         \         /           planes, 1960). Of an edge that lies along a face they do not: most take a comparison.
+ *
+ * A triangle is nearest on its edges, or, where a corner or a ball is in front of it, within: from a place on it by f against n and back onto its
+ * plane, again and again, leads there (alternating projections), at a corner at once.
+ *
+ * They are pushed as pairs of features are (push.c), one of which is the surface; those that were found where a substep ended are held in the next one
+ * while limits are swept. One after the other: by collider, edges before triangles, in the skin's order. */
+#include <string.h>
+
+#include "contact/touch.h"
+
+enum { LANES = SK_LANES, MOST_EDGE_ROUNDS = 6, TRIANGLE_ROUNDS = 4 };
+
+/* A place on an edge, with its distance and how fast that grows along the edge. */
+typedef struct tangent {
+    real t, f, slope;
+} tangent;
+
+/* As many edges or triangles as are looked at together. */
+typedef struct batch {
+    sk_face face[LANES];
+    sk_vec3 corner[LANES][3], place[LANES];
+    real weight[LANES][3], best[LANES]; /* where it is looked; the least distance that was found */
+    tangent end[LANES][2];              /* of edges: before the nearest place and after it */
+    sk_sixteen_contacts contacts;
+    size_t count;
+} batch;
+
+typedef struct meeting {
+    sk_touch *touch;
+    const sk_collider *collider;
+    sk_pose pose, start;
+    real h, thickness, reach; /* s, m; what is farther off than the reach touches in no substep */
+} meeting;
+
+static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, sk_sixteen_contacts *contacts) {
+    SK_VECTOR_ALIGNED real at[3][LANES];
+    for (size_t l = 0; l < LANES; l++) {
+        const sk_vec3 x = place[l < count ? l : 0];
+        at[0][l] = x.x, at[1][l] = x.y, at[2][l] = x.z;
+    }
+    sk_probe_sixteen_of[m->touch->isa](m->collider, pose, at, contacts);
+}
+
+static sk_vec3 normal_of(const sk_sixteen_contacts *contacts, size_t l) {
+    return (sk_vec3){contacts->normal[0][l], contacts->normal[1][l], contacts->normal[2][l]};
+}
+
+static sk_vec3 sum_of(const real weight[3], const sk_vec3 x[3]) {
+    return sk_add(sk_add(sk_scale(weight[0], x[0]), sk_scale(weight[1], x[1])), sk_scale(weight[2], x[2]));
+}
+
+/* Looks at the places by those weights, and keeps the nearest so far. */
+static void look(const meeting *m, batch *b) {
+    for (size_t l = 0; l < b->count; l++) b->place[l] = sum_of(b->weight[l], b->corner[l]);
+    probe(m, &m->pose, b->place, b->count, &b->contacts);
+    for (size_t l = 0; l < b->count; l++) {
+        const real f = b->contacts.distance[l], *w = b->weight[l];
+        if (!(f < b->best[l]) || !(sk_min(w[0], sk_min(w[1], w[2])) >= 0)) continue;
+        sk_face *face = &b->face[l];
+        b->best[l] = f, face->normal = normal_of(&b->contacts, l);
+        face->at = sk_sub(b->place[l], sk_scale(f, face->normal));
+        memcpy(face->weight, w, sizeof face->weight);
+    }
+}
+
+/* Where the tangents at both ends meet, and how far from the solid. */
+static tangent meet_of(const tangent end[2]) {
+    const tangent a = end[0], b = end[1];
+    const real t = sk_max(a.t, sk_min(b.t, (b.f - b.slope * b.t - a.f + a.slope * a.t) / (a.slope - b.slope)));
+    return (tangent){t, a.f + a.slope * (t - a.t), 0};
+}
+
+static void find_on_edges(const meeting *m, batch *b) {
+    const real little = (real)0.02 * m->thickness;
+    bool further = true;
+    for (int round = 0; round < MOST_EDGE_ROUNDS && further; round++) {
+        further = false;
+        for (size_t l = 0; l < b->count; l++) b->weight[l][1] = meet_of(b->end[l]).t, b->weight[l][0] = 1 - b->weight[l][1];
+        look(m, b);
+        for (size_t l = 0; l < b->count; l++) {
+            const real slope = sk_dot(normal_of(&b->contacts, l), sk_sub(b->corner[l][1], b->corner[l][0]));
+            b->end[l][slope < 0 ? 0 : 1] = (tangent){b->weight[l][1], b->contacts.distance[l], slope};
+            const real low = meet_of(b->end[l]).f;
+            further |= low < m->reach && b->best[l] - low > little;
+        }
+    }
+}
+
+/* The weights of the corners at the place in their plane that is nearest to p; of those without an area none. */
+static void find_weights(const sk_vec3 x[3], sk_vec3 p, real weight[3]) {
+    const sk_vec3 a = sk_sub(x[1], x[0]), b = sk_sub(x[2], x[0]), r = sk_sub(p, x[0]), n = sk_cross(a, b);
+    const real square = sk_dot(n, n), per = square > 0 ? 1 / square : 0;
+    weight[1] = per * sk_dot(n, sk_cross(r, b));
+    weight[2] = per * sk_dot(n, sk_cross(a, r));
+    weight[0] = per * square - weight[1] - weight[2];
+}
+
+static void find_within(const meeting *m, batch *b) {
+    for (int round = 0; round < TRIANGLE_ROUNDS; round++) {
+        for (size_t l = 0; l < b->count; l++) {
+            const real f = b->contacts.distance[l];
+            // from within a solid, where there is no nearest place of both, a little further in
+            const sk_vec3 to = sk_sub(b->place[l], sk_scale(f > 0 ? f : (real)0.5 * m->thickness, normal_of(&b->contacts, l)));
+            if (round) find_weights(b->corner[l], to, b->weight[l]);
+            else b->weight[l][0] = b->weight[l][1] = b->weight[l][2] = (real)(1.0 / 3);
+        }
+        look(m, b);
+    }
+}
+
+/* Lists those of a batch that are near, with how far off they are to be: what began nearer comes out slowly. */
+static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m, batch *b)) {
+    sk_faces *faces = &m->touch->faces;
+    const size_t first = faces->near.count;
+    size_t count = 0;
+    for (size_t l = 0; l < b->count; l++) b->best[l] = SK_REAL_MAX;
+    if (b->count) find(m, b);
+    for (size_t l = 0; l < b->count; l++) {
+        sk_face *face = &b->face[l];
+        if (!(b->best[l] < m->reach)) continue;
+        sk_vec3 before[3];
+        for (int c = 0; c < 3; c++) before[c] = sk_xyz(m->touch->p[face->corner[c]]);
+        face->way = sk_scale(m->h, sk_add(m->pose.velocity, sk_cross(m->pose.spin, sk_sub(face->at, m->pose.position))));
+        b->place[count++] = sum_of(face->weight, before);
+        faces->near.data[faces->near.count++] = *face;
+    }
+    b->count = 0;
+    if (!count) return;
+    probe(m, &m->start, b->place, count, &b->contacts);
+    const real gain = 60 * m->h * m->thickness; // a thickness in a sixtieth of a second
+    for (size_t i = 0; i < count; i++) faces->near.data[first + i].wanted = sk_min(m->thickness, b->contacts.distance[i] + gain);
+}
+
+/* Adds an edge or a triangle whose distance falls from each corner to another one, and not only to what is too far. */
+static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
+    const sk_touch *touch = m->touch;
+    sk_face *face = &b->face[b->count];
+    real low = -SK_REAL_MAX;
+    for (int c = 0; c < corners; c++) {
+        const sk_vec4 plane = touch->faces.plane[v[c]];
+        real slope = 0;
+        for (int d = 0; d < corners; d++) slope = sk_min(slope, sk_dot(sk_xyz(plane), sk_sub(sk_xyz(touch->q[v[d]]), sk_xyz(touch->q[v[c]]))));
+        if (!(plane.w < SK_REAL_MAX) || !(slope < 0)) return;
+        low = sk_max(low, plane.w + slope);
+        b->end[b->count][c & 1] = (tangent){(real)(c & 1), plane.w, c ? -slope : slope};
+    }
+    if (!(low < m->reach) || !(corners == 3 || meet_of(b->end[b->count]).f < m->reach) || !sk_only_has(&m->collider->only, touch->skin.particle[v[0]]))
+        return;
+    for (int c = 0; c < 3; c++) {
+        face->corner[c] = v[c < corners ? c : 0];
+        b->corner[b->count][c] = sk_xyz(touch->q[face->corner[c]]);
+        b->weight[b->count][c] = 0;
+    }
+    face->friction = (real)m->collider->common->friction;
+    if (++b->count == LANES) take_batch(m, b, find);
+}
+
+/* Asks for the planes of vertices that are near; returns whether there are any. */
+static bool find_planes(const meeting *m) {
+    sk_touch *touch = m->touch;
+    const size_t count = touch->skin.vertex_count;
+    const real far = m->reach + (real)1.5 * touch->skin.longest;
+    sk_sixteen_contacts blocks, contacts;
+    sk_vec3 place[LANES];
+    bool any = false;
+    for (size_t first = 0; first < count; first += LANES) {
+        const size_t block = first / LANES, lane = block % LANES, lanes = count - first < LANES ? count - first : LANES;
+        size_t ahead = lane ? LANES : 0;
+        for (; ahead < LANES && first + ahead * LANES < count; ahead++) place[ahead] = sk_xyz(touch->faces.block[block + ahead]);
+        if (!lane) probe(m, &m->pose, place, ahead, &blocks);
+        const bool near = blocks.distance[lane] < touch->faces.block[block].w + far;
+        any |= near;
+        for (size_t l = 0; l < lanes; l++) place[l] = sk_xyz(touch->q[first + l]);
+        if (near) probe(m, &m->pose, place, lanes, &contacts);
+        for (size_t l = 0; l < lanes; l++) {
+            const sk_vec3 n = near ? normal_of(&contacts, l) : place[l];
+            touch->faces.plane[first + l] = (sk_vec4){n.x, n.y, n.z, near ? contacts.distance[l] : SK_REAL_MAX};
+        }
+    }
+    return any;
+}
+
+/* Loads where all are, and what is around sixteen. */
+static void load(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        sk_vec4 *block = &touch->faces.block[v / LANES];
+        touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
+        if (v % LANES == 0) *block = touch->q[v], block->w = 0;
+        block->w = sk_max(block->w, sk_length(sk_sub(sk_xyz(touch->q[v]), sk_xyz(*block))));
+    }
+}
+
+static void find_at(const meeting *m) {
+    const sk_skin *skin = &m->touch->skin;
+    if (!find_planes(m)) return;
+    batch b = {.count = 0};
+    for (size_t e = 0; e < skin->edge_count; e++) add(m, &b, skin->edge[e], 2, find_on_edges);
+    take_batch(m, &b, find_on_edges);
+    for (size_t t = 0; t < skin->triangle_count; t++) add(m, &b, skin->triangle[t], 3, find_within);
+    take_batch(m, &b, find_within);
+}
+
+/* Lists what is near whatever collider, in the order of these. */
+static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
+    sk_faces *faces = &touch->faces;
+    faces->near.count = 0;
+    load(touch, run, op);
+    for (size_t i = 0; i < faces->count && !run->no_memory; i++) {
+        const sk_collider *collider = faces->collider[i];
+        const real thickness = (real)collider->common->thickness;
+        const meeting m = {touch, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
+                           (real)op->dt, thickness, (real)1.5 * thickness};
+        if (!SK_RESERVE(run->allocator, &faces->near, faces->near.count + touch->skin.triangle_count + touch->skin.edge_count)) run->no_memory = true;
+        else if (collider->common->enabled) find_at(&m);
+    }
+}
+
+void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) {
+    (void)from, (void)end;
+    sk_touch *touch = ((const sk_force *)op->rule)->state;
+    if (!touch || !touch->faces.count || !touch->found) return;
+    sk_faces *faces = &touch->faces;
+    if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
+    sk_touch_load(touch, op->packed);
+    const bool ends = op->coefficient[0] > 0, goes_on = faces->clock != touch->clock;
+    if (ends || (goes_on && !(run->iteration && faces->clock + 1 == touch->clock))) find_all(touch, run, op);
+    else
+        for (size_t i = 0; i < faces->near.count && goes_on; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+    faces->clock = touch->clock;
+    for (size_t i = 0; i < faces->near.count; i++) sk_touch_push_face(touch, run, op, &faces->near.data[i]);
+}
+
+bool sk_faces_take(sk_faces *faces, sk_allocator *allocator, const sk_meeting_parts *parts) {
+    sk_release(allocator, faces->collider);
+    faces->count = 0;
+    faces->collider = sk_allocate(allocator, (parts->collider_count + 1) * sizeof *faces->collider);
+    for (size_t i = 0; i < parts->collider_count && faces->collider; i++)
+        if (parts->collider[i]->type->passing == SK_CONVEX) faces->collider[faces->count++] = parts->collider[i];
+    return faces->collider;
+}

@@ -1,0 +1,28 @@
+/* What lies between particles against colliders (faces.c): edges and triangles. */
+#ifndef SK_CONTACT_FACES_H
+#define SK_CONTACT_FACES_H
+
+#include "base/vector.h"
+#include "colliders/collider.h"
+
+/* An edge or a triangle near a collider: where it is nearest, and the surface there. */
+typedef struct sk_face {
+    uint32_t corner[3];
+    real weight[3]; /* of an edge, the last is 0 */
+    sk_vec3 normal, at, way; /* of the surface: unit, m, and m in a substep */
+    real wanted, friction;   /* m: how far off it is to be */
+} sk_face;
+
+typedef struct sk_faces {
+    const sk_collider **collider; /* those that are convex */
+    size_t count;
+    struct {
+        sk_face *data;
+        size_t count, capacity;
+    } near;         /* as they were found last: */
+    uint64_t clock; /* in which substep */
+    sk_vec4 *block; /* of sixteen vertices: the first one, and in w how far the others are from there; */
+    sk_vec4 *plane; /* of vertices: the normal at the collider that is looked at, and in w the distance; SK_REAL_MAX: it is far */
+} sk_faces;
+
+#endif
