@@ -88,7 +88,7 @@ static answer probe(const skein_world *world, double time, vec3 p) {
             many[0][l] = (skein_real)(p.x + (l - lane)), many[1][l] = (skein_real)p.y;
             many[2][l] = (skein_real)(p.z - 0.1 * (l - lane));
         }
-        sk_probe_sixteen_of[version ? world->isa : 0](collider, &pose, many, &contact);
+        sk_probe_sixteen_of[version ? world->isa : 0](collider, &pose, many, SK_REAL_MAX, &contact);
         answer now = {(double)contact.distance[lane],
                       {(double)contact.normal[0][lane], (double)contact.normal[1][lane],
                        (double)contact.normal[2][lane]},

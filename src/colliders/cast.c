@@ -30,7 +30,7 @@ static void probe_way(caster *c, double t, double step, double distance[SK_LANES
         for (int k = 0; k < 3; k++) p[k][i] = (real)(c->origin[k] + at * c->along[k]);
     }
     sk_sixteen_contacts contact;
-    sk_probe_sixteen_of[0](c->collider, &c->pose, p, &contact);
+    sk_probe_sixteen_of[0](c->collider, &c->pose, p, SK_REAL_MAX, &contact);
     for (int i = 0; i < SK_LANES; i++) distance[i] = (double)contact.distance[i];
     for (int k = 0; k < 3; k++) c->normal[k] = (double)contact.normal[k][SK_LANES - 1];
 }

@@ -201,11 +201,13 @@ void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
                                  size_t particle_count);
 
-/* Sixteen points' distances and normals, from where that is no matter of kernels: x, y and z in three rows. */
+/* Sixteen points' distances and normals, from where that is no matter of kernels: x, y and z in three rows; beyond `reach` (m, or SK_REAL_MAX) the
+ * distance may be anything that is, too. */
 typedef struct sk_sixteen_contacts {
     real normal[3][SK_LANES], distance[SK_LANES];
+    real own[3][SK_LANES]; /* the velocity that the surface has besides the pose's, m/s: of types that deform */
 } sk_sixteen_contacts;
-typedef void sk_probe_sixteen(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES],
+typedef void sk_probe_sixteen(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES], real reach,
                               sk_sixteen_contacts *contacts);
 extern sk_probe_sixteen *const sk_probe_sixteen_of[SK_ISA_COUNT];
 

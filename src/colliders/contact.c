@@ -210,18 +210,25 @@ void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t 
     }
 }
 
-void SK_KERNEL(probe_sixteen)(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES],
+void SK_KERNEL(probe_sixteen)(const sk_collider *collider, const sk_pose *pose, real p[3][SK_LANES], real reach,
                               sk_sixteen_contacts *contacts) {
+    const sk_collider_type *type = collider->type;
+    const sk_wide most = sk_splat(reach);
     for (size_t l = 0; l < SK_LANES; l += SK_PART) {
         sk_wide3 at;
         sk_contact c;
         memcpy(&at.x, p[0] + l, sizeof at.x), memcpy(&at.y, p[1] + l, sizeof at.y);
         memcpy(&at.z, p[2] + l, sizeof at.z);
-        collider->type->probe[SK_THIS_ISA](collider->params, pose, &at, &c);
+        if (type->near[SK_THIS_ISA] && reach < SK_REAL_MAX) type->near[SK_THIS_ISA](collider->params, pose, &at, &most, &c);
+        else type->probe[SK_THIS_ISA](collider->params, pose, &at, &c);
         memcpy(contacts->normal[0] + l, &c.normal.x, sizeof c.normal.x);
         memcpy(contacts->normal[1] + l, &c.normal.y, sizeof c.normal.y);
         memcpy(contacts->normal[2] + l, &c.normal.z, sizeof c.normal.z);
         memcpy(contacts->distance + l, &c.distance, sizeof c.distance);
+        if (!type->deforms) continue;
+        const sk_wide3 own = type->changes ? plus(times(c.speed, c.normal), c.slide) : times(c.speed, c.normal);
+        memcpy(contacts->own[0] + l, &own.x, sizeof own.x), memcpy(contacts->own[1] + l, &own.y, sizeof own.y);
+        memcpy(contacts->own[2] + l, &own.z, sizeof own.z);
     }
 }
 
@@ -281,7 +288,7 @@ static size_t probe_block(const sk_collider *collider, const sk_pose *pose, cons
         sk_vec4 q = x[slot_of[first + i]];
         p[0][i] = q.x, p[1][i] = q.y, p[2][i] = q.z;
     }
-    sk_probe_sixteen_of[0](collider, pose, p, contacts);
+    sk_probe_sixteen_of[0](collider, pose, p, SK_REAL_MAX, contacts);
     return count;
 }
 
@@ -316,7 +323,7 @@ void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa i
         sk_sixteen_contacts contact;
         for (size_t i = 0; i < lanes; i++)
             for (int k = 0; k < 3; k++) p[k][i] = (real)points[3 * (first + i) + (size_t)k];
-        sk_probe_sixteen_of[isa](collider, &pose, p, &contact);
+        sk_probe_sixteen_of[isa](collider, &pose, p, SK_REAL_MAX, &contact);
         for (size_t i = 0; i < lanes; i++) {
             double *normal = normals ? normals + 3 * (first + i) : NULL;
             if (distances) distances[first + i] = (double)contact.distance[i];

@@ -69,7 +69,7 @@ SK_INLINE bool only_enters(const sk_swept *sweep, const double a[3], const doubl
     for (int i = 0; i < SK_LANES; i++)
         for (int k = 0; k < 3; k++) p[k][i] = (real)(a[k] + (part + (1 - part) * (i + 1) / SK_LANES) * (b[k] - a[k]));
     sk_sixteen_contacts contacts;
-    sk_probe_sixteen_of[0](sweep->collider, &sweep->pose, p, &contacts);
+    sk_probe_sixteen_of[0](sweep->collider, &sweep->pose, p, SK_REAL_MAX, &contacts);
     for (int i = 0; i < SK_LANES; i++)
         if (contacts.distance[i] > 0) return false;
     return true;

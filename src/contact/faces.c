@@ -13,6 +13,7 @@
  * while limits are swept. One after the other: by collider, edges before triangles, in the skin's order. */
 #include <string.h>
 
+#include "colliders/trimesh.h"
 #include "contact/touch.h"
 
 enum { LANES = SK_LANES, MOST_EDGE_ROUNDS = 6, TRIANGLE_ROUNDS = 4 };
@@ -36,20 +37,24 @@ typedef struct meeting {
     sk_touch *touch;
     const sk_collider *collider;
     sk_pose pose, start;
-    real h, thickness, reach; /* s, m; what is farther off than the reach touches in no substep */
+    real h, thickness, reach, far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
 } meeting;
 
-static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, sk_sixteen_contacts *contacts) {
+static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, real reach, sk_sixteen_contacts *contacts) {
     SK_VECTOR_ALIGNED real at[3][LANES];
     for (size_t l = 0; l < LANES; l++) {
         const sk_vec3 x = place[l < count ? l : 0];
         at[0][l] = x.x, at[1][l] = x.y, at[2][l] = x.z;
     }
-    sk_probe_sixteen_of[m->touch->isa](m->collider, pose, at, contacts);
+    sk_probe_sixteen_of[m->touch->isa](m->collider, pose, at, reach, contacts);
+}
+
+static sk_vec3 lane_of(const real x[3][LANES], size_t l) {
+    return (sk_vec3){x[0][l], x[1][l], x[2][l]};
 }
 
 static sk_vec3 normal_of(const sk_sixteen_contacts *contacts, size_t l) {
-    return (sk_vec3){contacts->normal[0][l], contacts->normal[1][l], contacts->normal[2][l]};
+    return lane_of((const real(*)[LANES])contacts->normal, l);
 }
 
 static sk_vec3 sum_of(const real weight[3], const sk_vec3 x[3]) {
@@ -59,13 +64,14 @@ static sk_vec3 sum_of(const real weight[3], const sk_vec3 x[3]) {
 /* Looks at the places by those weights, and keeps the nearest so far. */
 static void look(const meeting *m, batch *b) {
     for (size_t l = 0; l < b->count; l++) b->place[l] = sum_of(b->weight[l], b->corner[l]);
-    probe(m, &m->pose, b->place, b->count, &b->contacts);
+    probe(m, &m->pose, b->place, b->count, m->far, &b->contacts);
     for (size_t l = 0; l < b->count; l++) {
         const real f = b->contacts.distance[l], *w = b->weight[l];
         if (!(f < b->best[l]) || !(sk_min(w[0], sk_min(w[1], w[2])) >= 0)) continue;
         sk_face *face = &b->face[l];
         b->best[l] = f, face->normal = normal_of(&b->contacts, l);
-        face->at = sk_sub(b->place[l], sk_scale(f, face->normal));
+        face->at = sk_sub(b->place[l], sk_scale(f, face->normal)), face->way = (sk_vec3){0, 0, 0};
+        if (m->collider->type->deforms) face->way = sk_scale(m->h, lane_of((const real(*)[LANES])b->contacts.own, l));
         memcpy(face->weight, w, sizeof face->weight);
     }
 }
@@ -127,26 +133,34 @@ static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m
         if (!(b->best[l] < m->reach)) continue;
         sk_vec3 before[3];
         for (int c = 0; c < 3; c++) before[c] = sk_xyz(m->touch->p[face->corner[c]]);
-        face->way = sk_scale(m->h, sk_add(m->pose.velocity, sk_cross(m->pose.spin, sk_sub(face->at, m->pose.position))));
         b->place[count++] = sum_of(face->weight, before);
+        face->wanted = sk_dot(face->normal, face->way); // what it had more of a distance, where the surface came by itself
+        face->way = sk_add(face->way, sk_scale(m->h, sk_add(m->pose.velocity, sk_cross(m->pose.spin, sk_sub(face->at, m->pose.position)))));
         faces->near.data[faces->near.count++] = *face;
     }
     b->count = 0;
     if (!count) return;
-    probe(m, &m->start, b->place, count, &b->contacts);
+    probe(m, &m->start, b->place, count, m->reach, &b->contacts);
     const real gain = 60 * m->h * m->thickness; // a thickness in a sixtieth of a second
-    for (size_t i = 0; i < count; i++) faces->near.data[first + i].wanted = sk_min(m->thickness, b->contacts.distance[i] + gain);
+    for (size_t i = 0; i < count; i++) {
+        sk_face *face = &faces->near.data[first + i];
+        face->wanted = sk_min(m->thickness, face->wanted + b->contacts.distance[i] + gain);
+    }
+}
+
+/* How much farther off vertex b is than a, by the plane there. */
+static inline real fall(const sk_touch *touch, uint32_t a, uint32_t b) {
+    return sk_dot(sk_xyz(touch->faces.plane[a]), sk_sub(sk_xyz(touch->q[b]), sk_xyz(touch->q[a])));
 }
 
 /* Adds an edge or a triangle whose distance falls from each corner to another one, and not only to what is too far. */
-static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
+static inline void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
     const sk_touch *touch = m->touch;
     sk_face *face = &b->face[b->count];
     real low = -SK_REAL_MAX;
     for (int c = 0; c < corners; c++) {
         const sk_vec4 plane = touch->faces.plane[v[c]];
-        real slope = 0;
-        for (int d = 0; d < corners; d++) slope = sk_min(slope, sk_dot(sk_xyz(plane), sk_sub(sk_xyz(touch->q[v[d]]), sk_xyz(touch->q[v[c]]))));
+        const real slope = corners == 2 ? fall(touch, v[c], v[1 - c]) : sk_min(fall(touch, v[c], v[(c + 1) % 3]), fall(touch, v[c], v[(c + 2) % 3]));
         if (!(plane.w < SK_REAL_MAX) || !(slope < 0)) return;
         low = sk_max(low, plane.w + slope);
         b->end[b->count][c & 1] = (tangent){(real)(c & 1), plane.w, c ? -slope : slope};
@@ -166,22 +180,25 @@ static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void
 static bool find_planes(const meeting *m) {
     sk_touch *touch = m->touch;
     const size_t count = touch->skin.vertex_count;
-    const real far = m->reach + (real)1.5 * touch->skin.longest;
     sk_sixteen_contacts blocks, contacts;
     sk_vec3 place[LANES];
     bool any = false;
     for (size_t first = 0; first < count; first += LANES) {
         const size_t block = first / LANES, lane = block % LANES, lanes = count - first < LANES ? count - first : LANES;
         size_t ahead = lane ? LANES : 0;
-        for (; ahead < LANES && first + ahead * LANES < count; ahead++) place[ahead] = sk_xyz(touch->faces.block[block + ahead]);
-        if (!lane) probe(m, &m->pose, place, ahead, &blocks);
-        const bool near = blocks.distance[lane] < touch->faces.block[block].w + far;
+        real widest = 0;
+        for (; ahead < LANES && first + ahead * LANES < count; ahead++) {
+            const sk_vec4 middle = touch->faces.block[block + ahead];
+            place[ahead] = sk_xyz(middle), widest = sk_max(widest, middle.w);
+        }
+        if (!lane) probe(m, &m->pose, place, ahead, widest + m->far, &blocks);
+        const bool near = blocks.distance[lane] < touch->faces.block[block].w + m->far;
         any |= near;
         for (size_t l = 0; l < lanes; l++) place[l] = sk_xyz(touch->q[first + l]);
-        if (near) probe(m, &m->pose, place, lanes, &contacts);
+        if (near) probe(m, &m->pose, place, lanes, m->far, &contacts);
         for (size_t l = 0; l < lanes; l++) {
             const sk_vec3 n = near ? normal_of(&contacts, l) : place[l];
-            touch->faces.plane[first + l] = (sk_vec4){n.x, n.y, n.z, near ? contacts.distance[l] : SK_REAL_MAX};
+            touch->faces.plane[first + l] = (sk_vec4){n.x, n.y, n.z, near && contacts.distance[l] < m->far ? contacts.distance[l] : SK_REAL_MAX};
         }
     }
     return any;
@@ -216,7 +233,7 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
         const sk_collider *collider = faces->collider[i];
         const real thickness = (real)collider->common->thickness;
         const meeting m = {touch, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
-                           (real)op->dt, thickness, (real)1.5 * thickness};
+                           (real)op->dt, thickness, (real)1.5 * thickness, (real)1.5 * (thickness + touch->skin.longest)};
         if (!SK_RESERVE(run->allocator, &faces->near, faces->near.count + touch->skin.triangle_count + touch->skin.edge_count)) run->no_memory = true;
         else if (collider->common->enabled) find_at(&m);
     }
@@ -234,7 +251,19 @@ void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) 
     else
         for (size_t i = 0; i < faces->near.count && goes_on; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
     faces->clock = touch->clock;
-    for (size_t i = 0; i < faces->near.count; i++) sk_touch_push_face(touch, run, op, &faces->near.data[i]);
+    for (size_t i = 0; i < faces->near.count; i++) {
+        const sk_face *face = &faces->near.data[i];
+        sk_vec3 x[3];
+        for (int c = 0; c < 3; c++) x[c] = sk_xyz(sk_load(run->vector[SK_X], op->packed, touch->slot[face->corner[c]]));
+        if (sk_dot(face->normal, sk_sub(sum_of(face->weight, x), face->at)) < face->wanted) sk_touch_push_face(touch, run, op, face);
+    }
+}
+
+/* Whether what is in it is another side than what is not: no ball has more than one within, and of an open sheet nobody knows from which side who
+ * crosses it came. */
+static bool has_inside(const sk_collider *collider) {
+    const sk_trimesh *mesh = collider->type->surface ? collider->type->surface(collider->params) : NULL;
+    return collider->type->passing != SK_NEVER_PASSED && !(mesh && mesh->sheet);
 }
 
 bool sk_faces_take(sk_faces *faces, sk_allocator *allocator, const sk_meeting_parts *parts) {
@@ -242,6 +271,6 @@ bool sk_faces_take(sk_faces *faces, sk_allocator *allocator, const sk_meeting_pa
     faces->count = 0;
     faces->collider = sk_allocate(allocator, (parts->collider_count + 1) * sizeof *faces->collider);
     for (size_t i = 0; i < parts->collider_count && faces->collider; i++)
-        if (parts->collider[i]->type->passing == SK_CONVEX) faces->collider[faces->count++] = parts->collider[i];
+        if (has_inside(parts->collider[i])) faces->collider[faces->count++] = parts->collider[i];
     return faces->collider;
 }

@@ -14,7 +14,7 @@ typedef struct sk_face {
 } sk_face;
 
 typedef struct sk_faces {
-    const sk_collider **collider; /* those that are convex */
+    const sk_collider **collider; /* that have an inside */
     size_t count;
     struct {
         sk_face *data;

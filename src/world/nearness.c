@@ -45,7 +45,7 @@ double sk_collider_distance(const skein_world *world, const sk_collider *collide
             const sk_vec4 x = all->vector[SK_X][all->slot_of[body->first_particle + first + (l < lanes ? l : 0)]];
             p[0][l] = x.x, p[1][l] = x.y, p[2][l] = x.z;
         }
-        sk_probe_sixteen_of[world->isa](collider, pose, p, &contacts);
+        sk_probe_sixteen_of[world->isa](collider, pose, p, SK_REAL_MAX, &contacts);
         for (size_t l = 0; l < lanes; l++) least = fmin(least, (double)contacts.distance[l]);
     }
     return least;
@@ -61,6 +61,6 @@ bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, c
         for (int l = 0; l < SK_LANES; l++) middle[k][l] = (low[k] + high[k]) / 2;
     }
     if (collider->type->making && !collider->type->take) return false;
-    sk_probe_sixteen_of[world->isa](collider, pose, middle, &contacts);
+    sk_probe_sixteen_of[world->isa](collider, pose, middle, SK_REAL_MAX, &contacts);
     return (double)contacts.distance[0] > sqrt(half) + clear;
 }
