@@ -1,5 +1,5 @@
 /* Colliders against what lies between particles. Colliders meet particles (colliders/contact.c): a corner of a box, an edge or a small ball would
- * go in between. So edges and triangles are kept off spheres, capsules and boxes, too.
+ * go in between. So edges and triangles are kept off all that have an inside, too.
  *
  *      o               o        Along an edge the distance f from a convex solid is a convex function: above its tangents, of which the derivative at
  *       \___       ___/         a place is one, n . e. If they fall towards each other at the ends, the nearest place is in between, and not
@@ -7,7 +7,8 @@
  *         \         /           planes, 1960). Of an edge that lies along a face they do not: most take a comparison.
  *
  * A triangle is nearest on its edges, or, where a corner or a ball is in front of it, within: from a place on it by f against n and back onto its
- * plane, again and again, leads there (alternating projections), at a corner at once.
+ * plane leads there (alternating projections), at a corner at once, and along an edge that leads to one in steps that get small: so the last one says along
+ * which line it is looked for, as on an edge. Where a solid is not convex all that holds near what is: an edge or a corner of a mesh.
  *
  * They are pushed as pairs of features are (push.c), one of which is the surface; those that were found where a substep ended are held in the next one
  * while limits are swept. One after the other: by collider, edges before triangles, in the skin's order. */
@@ -16,9 +17,9 @@
 #include "colliders/trimesh.h"
 #include "contact/touch.h"
 
-enum { LANES = SK_LANES, MOST_EDGE_ROUNDS = 6, TRIANGLE_ROUNDS = 4 };
+enum { LANES = SK_LANES, MOST_ROUNDS = 6 };
 
-/* A place on an edge, with its distance and how fast that grows along the edge. */
+/* A place on a line, as a part of its way, with its distance and how fast that grows along the line. */
 typedef struct tangent {
     real t, f, slope;
 } tangent;
@@ -28,7 +29,8 @@ typedef struct batch {
     sk_face face[LANES];
     sk_vec3 corner[LANES][3], place[LANES];
     real weight[LANES][3], best[LANES]; /* where it is looked; the least distance that was found */
-    tangent end[LANES][2];              /* of edges: before the nearest place and after it */
+    real line[LANES][2][3];             /* the ends, by weights, of the edge, or of a line on the triangle; */
+    tangent end[LANES][2];              /* what is known before the nearest place on it, and after it */
     sk_sixteen_contacts contacts;
     size_t count;
 } batch;
@@ -79,20 +81,32 @@ static void look(const meeting *m, batch *b) {
 /* Where the tangents at both ends meet, and how far from the solid. */
 static tangent meet_of(const tangent end[2]) {
     const tangent a = end[0], b = end[1];
-    const real t = sk_max(a.t, sk_min(b.t, (b.f - b.slope * b.t - a.f + a.slope * a.t) / (a.slope - b.slope)));
+    const real t = a.slope < b.slope ? sk_max(a.t, sk_min(b.t, (b.f - b.slope * b.t - a.f + a.slope * a.t) / (a.slope - b.slope))) : b.t;
     return (tangent){t, a.f + a.slope * (t - a.t), 0};
 }
 
-static void find_on_edges(const meeting *m, batch *b) {
+/* Looks at the place on each line that is a part t of its way, and what that says of the distance there. */
+static void look_on_line(const meeting *m, batch *b, const real t[LANES], tangent found[LANES]) {
+    for (size_t l = 0; l < b->count; l++)
+        for (int c = 0; c < 3; c++) b->weight[l][c] = b->line[l][0][c] + t[l] * (b->line[l][1][c] - b->line[l][0][c]);
+    look(m, b);
+    for (size_t l = 0; l < b->count; l++) {
+        const sk_vec3 along = sk_sub(sum_of(b->line[l][1], b->corner[l]), sum_of(b->line[l][0], b->corner[l]));
+        found[l] = (tangent){t[l], b->contacts.distance[l], sk_dot(normal_of(&b->contacts, l), along)};
+    }
+}
+
+static void find_on_lines(const meeting *m, batch *b) {
     const real little = (real)0.02 * m->thickness;
+    real t[LANES];
+    tangent found[LANES];
     bool further = true;
-    for (int round = 0; round < MOST_EDGE_ROUNDS && further; round++) {
+    for (int round = 0; round < MOST_ROUNDS && further; round++) {
         further = false;
-        for (size_t l = 0; l < b->count; l++) b->weight[l][1] = meet_of(b->end[l]).t, b->weight[l][0] = 1 - b->weight[l][1];
-        look(m, b);
+        for (size_t l = 0; l < b->count; l++) t[l] = meet_of(b->end[l]).t;
+        look_on_line(m, b, t, found);
         for (size_t l = 0; l < b->count; l++) {
-            const real slope = sk_dot(normal_of(&b->contacts, l), sk_sub(b->corner[l][1], b->corner[l][0]));
-            b->end[l][slope < 0 ? 0 : 1] = (tangent){b->weight[l][1], b->contacts.distance[l], slope};
+            b->end[l][found[l].slope < 0 ? 0 : 1] = found[l];
             const real low = meet_of(b->end[l]).f;
             further |= low < m->reach && b->best[l] - low > little;
         }
@@ -108,17 +122,38 @@ static void find_weights(const sk_vec3 x[3], sk_vec3 p, real weight[3]) {
     weight[0] = per * square - weight[1] - weight[2];
 }
 
+/* Where a line from one place through another, by their weights, is within a triangle. */
+static void clip_line(const real a[3], const real b[3], real line[2][3]) {
+    real t[2] = {-1e6, 1e6};
+    for (int c = 0; c < 3; c++) {
+        const real way = b[c] - a[c];
+        if (way > 0) t[0] = sk_max(t[0], -a[c] / way);
+        if (way < 0) t[1] = sk_min(t[1], -a[c] / way);
+    }
+    for (int end = 0; end < 2; end++)
+        for (int c = 0; c < 3; c++) line[end][c] = a[c] + (t[0] < t[1] ? t[end] : 0) * (b[c] - a[c]);
+}
+
 static void find_within(const meeting *m, batch *b) {
-    for (int round = 0; round < TRIANGLE_ROUNDS; round++) {
+    real ends[2][LANES] = {{0}}, before[LANES][3];
+    tangent found[LANES];
+    for (size_t l = 0; l < b->count; l++) b->weight[l][0] = b->weight[l][1] = b->weight[l][2] = (real)(1.0 / 3), ends[1][l] = 1;
+    for (int round = 0; round < 2; round++) {
+        look(m, b);
         for (size_t l = 0; l < b->count; l++) {
             const real f = b->contacts.distance[l];
             // from within a solid, where there is no nearest place of both, a little further in
             const sk_vec3 to = sk_sub(b->place[l], sk_scale(f > 0 ? f : (real)0.5 * m->thickness, normal_of(&b->contacts, l)));
-            if (round) find_weights(b->corner[l], to, b->weight[l]);
-            else b->weight[l][0] = b->weight[l][1] = b->weight[l][2] = (real)(1.0 / 3);
+            memcpy(before[l], b->weight[l], sizeof before[l]);
+            find_weights(b->corner[l], to, b->weight[l]);
         }
-        look(m, b);
     }
+    for (size_t l = 0; l < b->count; l++) clip_line(before[l], b->weight[l], b->line[l]);
+    for (int end = 0; end < 2; end++) {
+        look_on_line(m, b, ends[end], found);
+        for (size_t l = 0; l < b->count; l++) b->end[l][end] = found[l];
+    }
+    find_on_lines(m, b);
 }
 
 /* Lists those of a batch that are near, with how far off they are to be: what began nearer comes out slowly. */
@@ -170,7 +205,7 @@ static inline void add(const meeting *m, batch *b, const uint32_t *v, int corner
     for (int c = 0; c < 3; c++) {
         face->corner[c] = v[c < corners ? c : 0];
         b->corner[b->count][c] = sk_xyz(touch->q[face->corner[c]]);
-        b->weight[b->count][c] = 0;
+        b->line[b->count][0][c] = c == 0, b->line[b->count][1][c] = c == 1;
     }
     face->friction = (real)m->collider->common->friction;
     if (++b->count == LANES) take_batch(m, b, find);
@@ -218,8 +253,8 @@ static void find_at(const meeting *m) {
     const sk_skin *skin = &m->touch->skin;
     if (!find_planes(m)) return;
     batch b = {.count = 0};
-    for (size_t e = 0; e < skin->edge_count; e++) add(m, &b, skin->edge[e], 2, find_on_edges);
-    take_batch(m, &b, find_on_edges);
+    for (size_t e = 0; e < skin->edge_count; e++) add(m, &b, skin->edge[e], 2, find_on_lines);
+    take_batch(m, &b, find_on_lines);
     for (size_t t = 0; t < skin->triangle_count; t++) add(m, &b, skin->triangle[t], 3, find_within);
     take_batch(m, &b, find_within);
 }
