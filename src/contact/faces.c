@@ -207,7 +207,7 @@ static inline void add(const meeting *m, batch *b, const uint32_t *v, int corner
         b->corner[b->count][c] = sk_xyz(touch->q[face->corner[c]]);
         b->line[b->count][0][c] = c == 0, b->line[b->count][1][c] = c == 1;
     }
-    face->friction = (real)m->collider->common->friction;
+    face->thickness = m->thickness, face->friction = (real)m->collider->common->friction;
     if (++b->count == LANES) take_batch(m, b, find);
 }
 
@@ -274,6 +274,25 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
     }
 }
 
+/* Goes on with what was near where the last substep ended; false where that is not known. */
+static bool go_on(sk_touch *touch, const sk_run *run) {
+    sk_faces *faces = &touch->faces;
+    const bool known = run->iteration > 0 && faces->clock + 1 == touch->clock;
+    for (size_t i = 0; i < faces->near.count && known; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+    return known;
+}
+
+void sk_touch_start_faces(sk_touch *touch, sk_run *run, const sk_op *op) {
+    sk_faces *faces = &touch->faces;
+    if (!faces->count || !touch->found) return;
+    sk_touch_load(touch, op->packed);
+    if (!go_on(touch, run)) {
+        find_all(touch, run, op);
+        for (size_t i = 0; i < faces->near.count; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+    }
+    faces->clock = touch->clock;
+}
+
 void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) {
     (void)from, (void)end;
     sk_touch *touch = ((const sk_force *)op->rule)->state;
@@ -281,10 +300,8 @@ void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) 
     sk_faces *faces = &touch->faces;
     if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
     sk_touch_load(touch, op->packed);
-    const bool ends = op->coefficient[0] > 0, goes_on = faces->clock != touch->clock;
-    if (ends || (goes_on && !(run->iteration && faces->clock + 1 == touch->clock))) find_all(touch, run, op);
-    else
-        for (size_t i = 0; i < faces->near.count && goes_on; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+    const bool ends = op->coefficient[0] > 0, known = faces->clock == touch->clock;
+    if (ends || !(known || go_on(touch, run))) find_all(touch, run, op);
     faces->clock = touch->clock;
     for (size_t i = 0; i < faces->near.count; i++) {
         const sk_face *face = &faces->near.data[i];

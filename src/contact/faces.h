@@ -10,7 +10,7 @@ typedef struct sk_face {
     uint32_t corner[3];
     real weight[3]; /* of an edge, the last is 0 */
     sk_vec3 normal, at, way; /* of the surface: unit, m, and m in a substep */
-    real wanted, friction;   /* m: how far off it is to be */
+    real thickness, wanted, friction; /* m: how far off it is to be, in the end and now */
 } sk_face;
 
 typedef struct sk_faces {

@@ -32,7 +32,22 @@ static inline void spread(const sk_press *press, sk_vec3 what, sk_vec4 *to, size
     for (int c = 0; c < 4; c++) sk_add_at(to, packed, press->slot[c], sk_scale(press->weight[c], what));
 }
 
-/* Takes a pair over as it is when the substep begins; false where all of it is pinned. */
+/* How it presses what is so far apart; false where all of it is pinned. */
+static bool set_press(const sk_touch *touch, sk_press *press, real resist, real distance, real thickness, real friction, real h) {
+    if (!(resist > 0)) return false;
+    const real stiffness = 4, part = (real)0.25, nearest = (real)0.005; // the last: of the thickness
+    const real near = sk_max(distance, nearest * thickness), missing = sk_max(0, thickness - distance);
+    const real tight = sk_max(1, thickness / near);
+    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
+    const real gain = sk_min(sk_min(part * missing, (real)0.5 * near), 60 * h * touch->thickness);
+    press->wanted = sk_min(thickness, distance + gain);
+    press->stiffness = stiffness * tight * tight / (resist * h * h);
+    press->grip = press->stiffness * gain * friction;
+    press->rest = (real)0.2 * touch->thickness; // in a second
+    return true;
+}
+
+/* Takes a pair over as it is when the substep begins. */
 static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t entry, sk_press *press) {
     const sk_contact_params *params = ((const sk_force *)op->rule)->params;
     const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
@@ -46,21 +61,27 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
         press->slot[c] = touch->slot[v[c]];
         press->at[c] = v[c];
     }
-    const real resist = sk_pair_resist(touch, v, press->weight);
-    if (!(resist > 0)) return false;
     press->normal = (sk_vec3){pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
-    const real stiffness = 4, part = (real)0.25, nearest = (real)0.005; // the last: of the thickness
-    const real near = sk_max(distance, nearest * thickness), missing = sk_max(0, thickness - distance);
-    const real tight = sk_max(1, thickness / near);
-    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
-    const real gain = sk_min(sk_min(part * missing, (real)0.5 * near), 60 * h * touch->thickness);
-    press->wanted = sk_min(thickness, distance + gain);
-    press->stiffness = stiffness * tight * tight / (resist * h * h);
-    press->grip = press->stiffness * gain * sk_pair_friction(touch, v[0], v[2], (real)params->friction);
-    press->rest = (real)0.2 * touch->thickness; // in a second
-    return true;
+    press->surface = (sk_vec3){0, 0, 0};
+    return set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, thickness, sk_pair_friction(touch, v[0], v[2], (real)params->friction), h);
 }
 
+/* The same of an edge or triangle that is near a collider, which is where it will be. */
+static bool begin_face(const sk_touch *touch, const sk_face *face, real h, sk_press *press) {
+    const uint32_t v[4] = {face->corner[0], face->corner[1], face->corner[2], face->corner[0]};
+    real at = 0;
+    for (int c = 0; c < 4; c++) {
+        press->weight[c] = c < 3 ? face->weight[c] : 0;
+        press->slot[c] = touch->slot[v[c]], press->at[c] = v[c];
+        at += press->weight[c] * sk_dot(face->normal, sk_xyz(touch->p[v[c]]));
+    }
+    press->normal = face->normal;
+    press->surface = sk_scale(1 / h, face->way);
+    const real distance = at - sk_dot(face->normal, sk_sub(face->at, face->way));
+    const bool presses = set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, face->thickness, face->friction, h);
+    press->wanted += sk_dot(face->normal, face->at);
+    return presses;
+}
 /* Numbers the vertices that press in the order in which they come, so that a product passes over these alone. */
 static void number_corners(sk_touch *touch) {
     touch->press.slot_count = 0;
@@ -84,7 +105,8 @@ void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     if (!touch) return;
     touch->implicit = true, touch->corrects = false;
     touch->press.pair.count = touch->press.now.count = 0;
-    const size_t most = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count;
+    sk_touch_start_faces(touch, run, op);
+    const size_t most = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count + touch->faces.near.count;
     if (!most) return;
     if (!SK_RESERVE(run->allocator, &touch->press.pair, most) || !SK_RESERVE(run->allocator, &touch->press.now, most)) {
         run->no_memory = true;
@@ -95,12 +117,14 @@ void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
             sk_press *next = &touch->press.pair.data[touch->press.pair.count];
             touch->press.pair.count += begin_press(touch, op, sort, touch->near[sort].data[i], next);
         }
+    for (size_t i = 0; i < touch->faces.near.count; i++)
+        touch->press.pair.count += begin_face(touch, &touch->faces.near.data[i], (real)op->dt, &touch->press.pair.data[touch->press.pair.count]);
     number_corners(touch);
 }
 
 /* Its slip across the normal, and how fast that is. */
 static inline sk_vec3 slip_of(const sk_press *press, const sk_run *run, size_t packed, real *speed) {
-    sk_vec3 slip = sum_of(press, run->vector[SK_V], packed), n = press->normal;
+    sk_vec3 slip = sk_sub(sum_of(press, run->vector[SK_V], packed), press->surface), n = press->normal;
     slip = sk_sub(slip, sk_scale(sk_dot(n, slip), n));
     *speed = sk_length(slip);
     return slip;

@@ -311,6 +311,8 @@ bool sk_faces_take(sk_faces *faces, sk_allocator *allocator, const sk_meeting_pa
 /* Pushes edges and triangles out of colliders: with a coefficient of 1 those that are near now, else those that were where the last
  * substep ended. */
 sk_op_kernel sk_touch_push_faces;
+/* Where an implicit solve begins: those that are near then, or were where the last substep ended, with the surface where it will be. */
+void sk_touch_start_faces(sk_touch *touch, sk_run *run, const sk_op *op);
 
 /* ---- impact.c ---- */
 
