@@ -298,7 +298,7 @@
 #define SKEIN_POTENTIAL_PER_MASS "mass"
 #define SKEIN_POTENTIAL_PER_PARTICLE "particle"
 
-#define SKEIN_CONTACT "contact" /* surfaces and ropes neither pass through each other nor through themselves */
+#define SKEIN_CONTACT "contact" /* surfaces and ropes neither pass through each other nor through themselves; colliders meet all of them */
 #define SKEIN_CONTACT_THICKNESS "thickness" /* a number in m; how near surfaces come to each other; less where a body's own vertices are nearer as it was built */
 #define SKEIN_CONTACT_FRICTION "friction" /* a number; coefficient of friction between them */
 #define SKEIN_CONTACT_RECOVERY "recovery" /* a number in m/s; how fast surfaces that have gone through each other are led apart; 0: they stay so */

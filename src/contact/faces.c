@@ -184,12 +184,12 @@ static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m
 }
 
 /* How much farther off vertex b is than a, by the plane there. */
-static inline real fall(const sk_touch *touch, uint32_t a, uint32_t b) {
+static real fall(const sk_touch *touch, uint32_t a, uint32_t b) {
     return sk_dot(sk_xyz(touch->faces.plane[a]), sk_sub(sk_xyz(touch->q[b]), sk_xyz(touch->q[a])));
 }
 
 /* Adds an edge or a triangle whose distance falls from each corner to another one, and not only to what is too far. */
-static inline void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
+static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
     const sk_touch *touch = m->touch;
     sk_face *face = &b->face[b->count];
     real low = -SK_REAL_MAX;

@@ -573,7 +573,7 @@ static const sk_meeting meeting = {
 };
 
 const sk_force_type sk_surface_contact = {
-    .kind = {"contact", "surfaces and ropes neither pass through each other nor through themselves", SKEIN_FORCE,
+    .kind = {"contact", "surfaces and ropes neither pass through each other nor through themselves; colliders meet all of them", SKEIN_FORCE,
              fields, sizeof fields / sizeof *fields, sizeof(sk_contact_params)},
     .domain = SK_OVER_PARTICLES,
     .phase = SK_MEETS,
