@@ -37,6 +37,7 @@ typedef struct batch {
 
 typedef struct meeting {
     sk_touch *touch;
+    sk_run *run;
     const sk_collider *collider;
     sk_pose pose, start;
     real h, thickness, reach, far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
@@ -161,6 +162,7 @@ static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m
     sk_faces *faces = &m->touch->faces;
     const size_t first = faces->near.count;
     size_t count = 0;
+    if (!SK_RESERVE(m->run->allocator, &faces->near, first + LANES)) m->run->no_memory = true, b->count = 0;
     for (size_t l = 0; l < b->count; l++) b->best[l] = SK_REAL_MAX;
     if (b->count) find(m, b);
     for (size_t l = 0; l < b->count; l++) {
@@ -267,10 +269,9 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
     for (size_t i = 0; i < faces->count && !run->no_memory; i++) {
         const sk_collider *collider = faces->collider[i];
         const real thickness = (real)collider->common->thickness;
-        const meeting m = {touch, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
+        const meeting m = {touch, run, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
                            (real)op->dt, thickness, (real)1.5 * thickness, (real)1.5 * (thickness + touch->skin.longest)};
-        if (!SK_RESERVE(run->allocator, &faces->near, faces->near.count + touch->skin.triangle_count + touch->skin.edge_count)) run->no_memory = true;
-        else if (collider->common->enabled) find_at(&m);
+        if (collider->common->enabled) find_at(&m);
     }
 }
 
