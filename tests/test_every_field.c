@@ -40,7 +40,6 @@ static const struct {
     {"cache", "backstop", "as pull"},
     {"cache", "backstop_radius", "as pull"},
     {NULL, "groups", "a body is in them alone here; test_groups.c has rules that name them"},
-    {"cloth", "contact.friction", "the surfaces that are tried meet, and do not rub; test_fabrics.c has some that do"},
     {NULL, "map", "as many numbers as it leads; test_leashes.c has them"},
 };
 
