@@ -38,6 +38,8 @@ typedef struct batch {
 typedef struct meeting {
     sk_touch *touch;
     sk_run *run;
+    const sk_op *op;
+    bool *loaded;
     const sk_collider *collider;
     sk_pose pose, start;
     real h, thickness, reach, far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
@@ -213,41 +215,82 @@ static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void
     if (++b->count == LANES) take_batch(m, b, find);
 }
 
+/* Loads where all are, of whom somebody is near a collider. */
+static void load(const meeting *m) {
+    sk_touch *touch = m->touch;
+    if (!*m->loaded) sk_touch_load(touch, m->op->packed);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        if (!*m->loaded) touch->q[v] = sk_load(m->run->vector[SK_X], m->op->packed, touch->slot[v]);
+        touch->faces.plane[v].w = SK_REAL_MAX;
+    }
+    *m->loaded = true;
+}
+
+/* Asks for the planes of sixteen slots' vertices. */
+static void find_planes_of(const meeting *m, size_t first) {
+    sk_touch *touch = m->touch;
+    sk_sixteen_contacts contacts;
+    sk_vec3 place[LANES];
+    for (size_t l = 0; l < LANES; l++) place[l] = sk_xyz(sk_load(m->run->vector[SK_X], m->op->packed, first + l));
+    probe(m, &m->pose, place, LANES, m->far, &contacts);
+    for (size_t l = 0; l < LANES; l++) {
+        const sk_vec3 n = normal_of(&contacts, l);
+        if (touch->faces.here[first + l] > 0 && contacts.distance[l] < m->far)
+            touch->faces.plane[touch->vertex_at[first + l]] = (sk_vec4){n.x, n.y, n.z, contacts.distance[l]};
+    }
+}
+
 /* Asks for the planes of vertices that are near; returns whether there are any. */
 static bool find_planes(const meeting *m) {
-    sk_touch *touch = m->touch;
-    const size_t count = touch->skin.vertex_count;
-    sk_sixteen_contacts blocks, contacts;
+    const sk_vec4 *block = m->touch->faces.block;
+    const size_t count = m->touch->slots / LANES;
+    sk_sixteen_contacts contacts;
     sk_vec3 place[LANES];
     bool any = false;
+    place[0] = sk_xyz(block[count]);
+    probe(m, &m->pose, place, 1, block[count].w + m->far, &contacts);
+    if (!(contacts.distance[0] < block[count].w + m->far)) return false;
     for (size_t first = 0; first < count; first += LANES) {
-        const size_t block = first / LANES, lane = block % LANES, lanes = count - first < LANES ? count - first : LANES;
-        size_t ahead = lane ? LANES : 0;
+        const size_t lanes = count - first < LANES ? count - first : LANES;
         real widest = 0;
-        for (; ahead < LANES && first + ahead * LANES < count; ahead++) {
-            const sk_vec4 middle = touch->faces.block[block + ahead];
-            place[ahead] = sk_xyz(middle), widest = sk_max(widest, middle.w);
-        }
-        if (!lane) probe(m, &m->pose, place, ahead, widest + m->far, &blocks);
-        const bool near = blocks.distance[lane] < touch->faces.block[block].w + m->far;
-        any |= near;
-        for (size_t l = 0; l < lanes; l++) place[l] = sk_xyz(touch->q[first + l]);
-        if (near) probe(m, &m->pose, place, lanes, m->far, &contacts);
+        for (size_t l = 0; l < lanes; l++) place[l] = sk_xyz(block[first + l]), widest = sk_max(widest, block[first + l].w);
+        probe(m, &m->pose, place, lanes, widest + m->far, &contacts);
         for (size_t l = 0; l < lanes; l++) {
-            const sk_vec3 n = near ? normal_of(&contacts, l) : place[l];
-            touch->faces.plane[first + l] = (sk_vec4){n.x, n.y, n.z, near && contacts.distance[l] < m->far ? contacts.distance[l] : SK_REAL_MAX};
+            if (block[first + l].w < 0 || !(contacts.distance[l] < block[first + l].w + m->far)) continue;
+            if (!any) load(m);
+            any = true;
+            find_planes_of(m, LANES * (first + l));
         }
     }
     return any;
 }
 
-/* Loads where all are, and what is around sixteen. */
-static void load(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec4 *block = &touch->faces.block[v / LANES];
-        touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
-        if (v % LANES == 0) *block = touch->q[v], block->w = 0;
-        block->w = sk_max(block->w, sk_length(sk_sub(sk_xyz(touch->q[v]), sk_xyz(*block))));
+/* Finds what is around those of sixteen slots who can touch. */
+static void find_blocks(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    sk_vec4 *block = touch->faces.block, *all = block + touch->slots / LANES;
+    *all = (sk_vec4){0, 0, 0, -1};
+    for (size_t first = 0; first < touch->slots; first += LANES) {
+        const real *here = touch->faces.here + first;
+        real x[3][LANES], most = 0;
+        size_t one = 0;
+        if (first < op->packed) memcpy(x, run->vector[SK_X] + first, sizeof x); // as they lie
+        else
+            for (size_t l = 0; l < LANES; l++) {
+                const sk_vec4 at = run->vector[SK_X][first + l];
+                x[0][l] = at.x, x[1][l] = at.y, x[2][l] = at.z;
+            }
+        while (one < LANES && !(here[one] > 0)) one++;
+        const sk_vec3 middle = lane_of((const real(*)[LANES])x, one % LANES);
+        real square[LANES];
+        for (size_t l = 0; l < LANES; l++) {
+            const real a = x[0][l] - middle.x, b = x[1][l] - middle.y, c = x[2][l] - middle.z;
+            square[l] = here[l] * (a * a + b * b + c * c);
+        }
+        for (size_t l = 0; l < LANES; l++) most = sk_max(most, square[l]);
+        *block = (sk_vec4){middle.x, middle.y, middle.z, one < LANES ? (real)1.0001 * sk_sqrt(most) : -1};
+        if (all->w < 0) *all = *block;
+        else if (one < LANES) all->w = sk_max(all->w, (real)1.0001 * (block->w + sk_length(sk_sub(middle, sk_xyz(*all)))));
+        block++;
     }
 }
 
@@ -265,11 +308,12 @@ static void find_at(const meeting *m) {
 static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
     sk_faces *faces = &touch->faces;
     faces->near.count = 0;
-    load(touch, run, op);
+    bool loaded = false;
+    find_blocks(touch, run, op);
     for (size_t i = 0; i < faces->count && !run->no_memory; i++) {
         const sk_collider *collider = faces->collider[i];
         const real thickness = (real)collider->common->thickness;
-        const meeting m = {touch, run, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
+        const meeting m = {touch, run, op, &loaded, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
                            (real)op->dt, thickness, (real)1.5 * thickness, (real)1.5 * (thickness + touch->skin.longest)};
         if (collider->common->enabled) find_at(&m);
     }
@@ -286,7 +330,6 @@ static bool go_on(sk_touch *touch, const sk_run *run) {
 void sk_touch_start_faces(sk_touch *touch, sk_run *run, const sk_op *op) {
     sk_faces *faces = &touch->faces;
     if (!faces->count || !touch->found) return;
-    sk_touch_load(touch, op->packed);
     if (!go_on(touch, run)) {
         find_all(touch, run, op);
         for (size_t i = 0; i < faces->near.count; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
@@ -300,10 +343,10 @@ void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) 
     if (!touch || !touch->faces.count || !touch->found) return;
     sk_faces *faces = &touch->faces;
     if (touch->before != touch->copied) touch->before = run->vector[op->source[2]];
-    sk_touch_load(touch, op->packed);
     const bool ends = op->coefficient[0] > 0, known = faces->clock == touch->clock;
     if (ends || !(known || go_on(touch, run))) find_all(touch, run, op);
     faces->clock = touch->clock;
+    if (faces->near.count) sk_touch_load(touch, op->packed);
     for (size_t i = 0; i < faces->near.count; i++) {
         const sk_face *face = &faces->near.data[i];
         sk_vec3 x[3];

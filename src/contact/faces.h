@@ -21,7 +21,10 @@ typedef struct sk_faces {
         size_t count, capacity;
     } near;         /* as they were found last: */
     uint64_t clock; /* in which substep */
-    sk_vec4 *block; /* of sixteen vertices: the first one, and in w how far the others are from there; */
+    /* by slot: 1 where a vertex of the skin is, else 0; of sixteen, where the first of these is, and in w how far the others are from there, or -1;
+     * and after all of these the same of all */
+    real *here;
+    sk_vec4 *block;
     sk_vec4 *plane; /* of vertices: the normal at the collider that is looked at, and in w the distance; SK_REAL_MAX: it is far */
 } sk_faces;
 

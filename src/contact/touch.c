@@ -102,7 +102,7 @@ void sk_touch_load(sk_touch *touch, size_t packed) {
 
 static void release_slots(sk_touch *touch, sk_allocator *allocator) {
     void **arrays[] = {(void **)&touch->copied, (void **)&touch->course_block, (void **)&touch->off,
-                       (void **)&touch->vertex_at};
+                       (void **)&touch->vertex_at, (void **)&touch->faces.here, (void **)&touch->faces.block};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
         *arrays[i] = NULL;
@@ -129,7 +129,9 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         touch->course_block = sk_allocate(run->allocator, slots / 16 * sizeof *touch->course_block);
         touch->off = sk_allocate(run->allocator, slots / 16 * sizeof *touch->off);
         touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
-        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at) return false;
+        touch->faces.here = sk_allocate(run->allocator, slots * sizeof *touch->faces.here);
+        touch->faces.block = sk_allocate(run->allocator, (slots / 16 + 1) * sizeof *touch->faces.block);
+        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at || !touch->faces.here || !touch->faces.block) return false;
         touch->slot_capacity = slots;
     }
     touch->slots = slots;
@@ -137,7 +139,8 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         touch->course_block[b] = (sk_course_block){.square = {0}};
         for (int l = 0; l < 16; l++) touch->course_block[b].square[l] = SK_REAL_MAX; // who is not there is never lost
     }
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->vertex_at[touch->slot[v]] = (uint32_t)v;
+    memset(touch->faces.here, 0, slots * sizeof *touch->faces.here);
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->vertex_at[touch->slot[v]] = (uint32_t)v, touch->faces.here[touch->slot[v]] = 1;
     return true;
 }
 
@@ -414,7 +417,7 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
     LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices), LIST(lost, vertices), LIST(wild, vertices);
     LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
-    LIST(faces.block, vertices / SK_LANES + 1), LIST(faces.plane, vertices);
+    LIST(faces.plane, vertices);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
