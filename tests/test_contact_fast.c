@@ -235,7 +235,7 @@ static void what_is_thrown_is_not_stretched(void **state) {
     } cases[] = {
         {AT_AN_EDGE, false, 12, 0.4, 1}, {AT_AN_EDGE, true, 12, 0.4, 1}, {A_JELLY, false, 20, 0.4, 1},
         {AT_A_JELLY, false, 20, 0.6, 1}, {AT_A_JELLY, true, 12, 0.7, 0.8}, {AT_A_BALL, false, 20, 0.3, 0.4}, {AT_A_BALL, true, 20, 0.5, 1},
-        {A_BALL, false, 12, 0.3, 1}, {A_LED_BALL, false, 12, 0.3, 1},
+        {A_BALL, false, 12, 0.3, 1}, {A_LED_BALL, false, 12, 0.4, 1},
     };
     for (size_t c = SANITIZED ? COUNT(cases) - 2 : 0; c < COUNT(cases); c++) {
         double most[2] = {0, 0};
