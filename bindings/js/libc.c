@@ -30,6 +30,10 @@ void *memcpy(void *restrict to, const void *restrict from, size_t size) {
     return __builtin_memcpy(to, from, size);
 }
 
+void *memset(void *to, int byte, size_t size) {
+    return __builtin_memset(to, byte, size);
+}
+
 static void swap(char *a, char *b, size_t size) {
     for (size_t i = 0; i < size; i++) {
         const char was = a[i];

@@ -284,7 +284,7 @@ static void find_blocks(sk_touch *touch, const sk_run *run, const sk_op *op) {
         real square[LANES];
         for (size_t l = 0; l < LANES; l++) {
             const real a = x[0][l] - middle.x, b = x[1][l] - middle.y, c = x[2][l] - middle.z;
-            square[l] = here[l] * (a * a + b * b + c * c);
+            square[l] = here[l] > 0 ? a * a + b * b + c * c : 0; // who is nobody's may be anywhere
         }
         for (size_t l = 0; l < LANES; l++) most = sk_max(most, square[l]);
         *block = (sk_vec4){middle.x, middle.y, middle.z, one < LANES ? (real)1.0001 * sk_sqrt(most) : -1};
