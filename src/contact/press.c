@@ -47,7 +47,7 @@ static bool set_press(const sk_touch *touch, sk_press *press, real resist, real 
     return true;
 }
 
-/* Takes a pair over as it is when the substep begins. */
+/* Takes a pair over as it is when the substep begins; false where all of it is pinned. */
 static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t entry, sk_press *press) {
     const sk_contact_params *params = ((const sk_force *)op->rule)->params;
     const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
@@ -82,6 +82,7 @@ static bool begin_face(const sk_touch *touch, const sk_face *face, real h, sk_pr
     press->wanted += sk_dot(face->normal, face->at);
     return presses;
 }
+
 /* Numbers the vertices that press in the order in which they come, so that a product passes over these alone. */
 static void number_corners(sk_touch *touch) {
     touch->press.slot_count = 0;

@@ -4,6 +4,7 @@
  *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a twentieth are near
  *   push    each of these, in a fixed order, is brought to its thickness, with friction; or in an implicit solve presses (press.c);
  *           where that was raised in the midst of a run, slowly (sk_easing)
+ *   faces   colliders hold what lies between particles (faces.c), before a push and while limits are swept
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
  *
  * A pair is a vertex and a triangle, or two edges; they have no corner in common, and their bodies are no pair to be

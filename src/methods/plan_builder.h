@@ -130,7 +130,7 @@ typedef enum sk_meeting_sort {
     SK_MEETING_PUSH,
     SK_MEETING_PUSH_ON,
     SK_MEETING_LEAD,
-    SK_MEETING_FACES,
+    SK_MEETING_FACES, /* from here on they ask where the substep began */
     SK_MEETING_FACES_AGAIN, /* those that were found where the last substep ended */
     SK_MEETING_BOUND
 } sk_meeting_sort;
