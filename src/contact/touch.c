@@ -391,7 +391,7 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
         *run->supported = false;
     }
     good = good && find_tangles(touch, run, op) && find_pairs(touch, run, op, all);
-    touch->followed = touch->corrects = false;
+    touch->followed = touch->corrects = touch->pushes.known = false;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) touch->near[sort].count = 0;
     good = good && list_near(touch, run->allocator);
     if (good && easing->asks < easing->asks_end) ease(touch, (sk_force *)op->rule, run->time);
@@ -476,6 +476,9 @@ static void release(sk_force *force, sk_allocator *allocator) {
     sk_release(allocator, touch->other_order.data);
     sk_release(allocator, touch->first.data);
     sk_release(allocator, touch->press.pair.data);
+    sk_release(allocator, touch->pushes.pair.data);
+    sk_release(allocator, touch->pushes.class_of.data);
+    sk_release(allocator, touch->pushes.dealt.data);
     sk_release(allocator, touch->press.now.data);
     sk_release(allocator, touch->partner.data);
     sk_release(allocator, touch->faces.collider);

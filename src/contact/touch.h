@@ -2,7 +2,7 @@
  *
  *   begin   P = X; pairs of features that may come near are found anew where a vertex has left its way; all that are
  *           kept are looked at: distance, normal, places of contact; those nearer than thickness and a twentieth are near
- *   push    each of these, in a fixed order, is brought to its thickness, with friction; or in an implicit solve presses (press.c);
+ *   push    each of these, in a fixed order (slabs.c), is brought to its thickness, with friction; or in an implicit solve presses (press.c);
  *           where that was raised in the midst of a run, slowly (sk_easing)
  *   faces   colliders hold what lies between particles (faces.c), before a push and while limits are swept
  *   bound   no vertex goes further than its pairs allow, so that nothing passes
@@ -26,6 +26,7 @@
 #include "contact/faces.h"
 #include "contact/pairs.h"
 #include "contact/press.h"
+#include "contact/push.h"
 #include "contact/skin.h"
 #include "contact/spread.h"
 #include "contact/tangle.h"
@@ -181,6 +182,7 @@ typedef struct sk_touch {
     sk_yielding_list yielding;
     sk_closing_list may_close[SK_PAIR_SORTS]; /* and in none */
     sk_presses press;
+    sk_push_list pushes;
     struct {
         sk_pair_place *data;
         size_t count, capacity;
@@ -293,6 +295,12 @@ sk_op_kernel sk_touch_push_on;
 void sk_touch_push_face(sk_touch *touch, const sk_run *run, const sk_op *op, const sk_face *face);
 /* Where an implicit solve has pressed apart what is near: leads apart what goes through each other, and no more. */
 sk_op_kernel sk_touch_lead;
+
+/* ---- slabs.c ---- */
+
+/* Deals what is near to slabs, once in a substep: what has come too near may come nearer to its thickness by `gain`, m, in a push; `friction`
+ * is the rule's. False when there is no memory. */
+bool sk_touch_deal(sk_touch *touch, sk_allocator *allocator, real gain, real friction);
 
 /* ---- bound.c ---- */
 

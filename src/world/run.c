@@ -213,7 +213,7 @@ static void cut_chunks(segment_job *job, int threads) {
     // a lattice's rows lag so far that all of it is under way at once, and what is called for a few rows costs
     if (chunk < LONG_LAG && lag >= LONG_LAG) chunk = LONG_LAG;
     if (threads > 1 && job->iterations < (size_t)threads * LEAST_ITERATIONS) {
-        chunk = (rows / (size_t)threads + 3) / 4 * 4;
+        chunk = rows / (size_t)threads / 4 * 4;
         if (chunk < lag + 4) chunk = (lag + 7) / 4 * 4;
         job->head = lags / job->count;
     }

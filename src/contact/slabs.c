@@ -1,0 +1,141 @@
+/* Deals pairs that are near to slabs of space, so that threads may push what lies in different ones. Pairs that share a corner have an
+ * order; what is far from each other needs none.
+ *
+ *     slab      0     |     1     |     2     |     3         round 1   pairs within slabs 0, 1, 2, 3
+ *            x---x    |  x---x    x-----x     |  x--x               2   those across boundaries 0 and 2
+ *                  x--|--x        |        x--|--x                  3   those across boundary 1
+ *                                                                   4   those that are in three slabs or more */
+#include <math.h>
+
+#include "base/tasks.h"
+#include "contact/touch.h"
+
+enum { PAIRS_AT_ONCE = 1024 /* by one thread, at least */, MOST_PIECES = 32 };
+
+typedef struct deal {
+    sk_touch *touch;
+    real gain, friction; /* m, by which a pair may come nearer to its thickness; the rule's */
+    int axis;
+    real per, first; /* slabs a metre, and the number of the first of them */
+    size_t all, a_piece;
+    size_t place[MOST_PIECES][SK_PUSH_CLASSES]; /* how many are dealt there, and then where */
+} deal;
+
+/* The pair that is the i-th of all, corners first. */
+static const sk_pairs *pair_at(const sk_touch *touch, size_t i, int *sort, size_t *k) {
+    const size_t corners = touch->near[SK_CORNERS].count;
+    *sort = i < corners ? SK_CORNERS : SK_EDGES;
+    const uint32_t entry = touch->near[*sort].data[*sort == SK_EDGES ? i - corners : i];
+    *k = entry / 2;
+    return sk_pairs_of(touch, *sort, entry);
+}
+
+static void set_push(const deal *d, const sk_pairs *pairs, int sort, size_t k, sk_push *push) {
+    const sk_touch *touch = d->touch;
+    for (int c = 0; c < 4; c++) push->corner[c] = pairs->corner[c][k];
+    for (int c = 0; c < 3; c++) push->normal[c] = pairs->normal[c][k];
+    sk_weights_of(pairs, sort, k, push->weight);
+    // what has come too near in some other way gets its thickness back over some substeps, not as a blow
+    const real distance = pairs->distance[k], goal = sk_pair_goal(touch, push->corner[0], push->corner[2], pairs->thickness[k], distance);
+    push->wanted = sk_min(goal, distance + d->gain);
+    push->friction = sk_pair_friction(touch, push->corner[0], push->corner[2], d->friction);
+    const sk_quad before = sk_quad_sum(touch->p, push->corner, push->weight);
+    for (int c = 0; c < 3; c++) push->before[c] = before[c];
+}
+
+static real along(const deal *d, uint32_t vertex) {
+    const sk_vec4 *p = &d->touch->p[vertex];
+    return d->axis == 0 ? p->x : d->axis == 1 ? p->y : p->z;
+}
+
+static void set_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    deal *d = data;
+    for (size_t i = begin; i < end; i++) {
+        int sort;
+        size_t k;
+        const sk_pairs *pairs = pair_at(d->touch, i, &sort, &k);
+        set_push(d, pairs, sort, k, &d->touch->pushes.pair.data[i]);
+    }
+}
+
+/* Cuts the longest extent of where pairs begin, and no pair that comes or goes moves a cut: at multiples of a power of two. */
+static void cut_slabs(deal *d) {
+    const sk_push *pair = d->touch->pushes.pair.data;
+    real longest = 0;
+    int axis = 0;
+    for (d->axis = 0; d->axis < 3; d->axis++) {
+        real least = SK_REAL_MAX, most = -SK_REAL_MAX;
+        for (size_t i = 0; i < d->all; i++) {
+            const real at = along(d, pair[i].corner[0]);
+            least = sk_min(at, least), most = sk_max(at, most);
+        }
+        if (most - least > longest) longest = most - least, axis = d->axis, d->first = least;
+    }
+    d->axis = axis;
+    int exponent = 0;
+    if (longest > (real)1e-9 && longest < (real)1e9) frexp((double)longest, &exponent);
+    d->per = (real)ldexp(SK_MOST_SLABS, -exponent);
+    d->first = (real)floor((double)(d->per * d->first));
+}
+
+/* In which class of its sort a pair with these corners is. */
+static int class_of(const deal *d, const uint32_t corner[4]) {
+    int least = SK_MOST_SLABS, most = 0;
+    for (int c = 0; c < 4; c++) {
+        const real at = d->per * along(d, corner[c]) - d->first;
+        const int slab = at > 0 ? at < SK_MOST_SLABS - 1 ? (int)at : SK_MOST_SLABS - 1 : 0; // of no number, the first
+        least = slab < least ? slab : least, most = slab > most ? slab : most;
+    }
+    if (least == most) return least;
+    return most > least + 1 ? SK_SLAB_CLASSES - 1 : SK_MOST_SLABS + least / 2 + least % 2 * (SK_MOST_SLABS / 2);
+}
+
+static void classify_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    deal *d = data;
+    sk_push_list *pushes = &d->touch->pushes;
+    size_t *count = d->place[begin / d->a_piece];
+    for (size_t i = begin; i < end; i++) {
+        const int first = i < d->touch->near[SK_CORNERS].count ? 0 : SK_SLAB_CLASSES;
+        count[pushes->class_of.data[i] = (uint8_t)(first + class_of(d, pushes->pair.data[i].corner))]++;
+    }
+}
+
+static void deal_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    deal *d = data;
+    sk_push_list *pushes = &d->touch->pushes;
+    size_t *place = d->place[begin / d->a_piece];
+    for (size_t i = begin; i < end; i++) pushes->dealt.data[place[pushes->class_of.data[i]]++] = (uint32_t)i;
+}
+
+static void in_pieces(deal *d, sk_piece_body *body) {
+    sk_parallel_pieces(d->touch->tasks, 0, d->all, d->a_piece, body, d);
+}
+
+bool sk_touch_deal(sk_touch *touch, sk_allocator *allocator, real gain, real friction) {
+    sk_push_list *pushes = &touch->pushes;
+    if (pushes->known) return true;
+    deal d = {.touch = touch, .gain = gain, .friction = friction, .all = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count};
+    if (!SK_RESERVE(allocator, &pushes->pair, d.all) || !SK_RESERVE(allocator, &pushes->class_of, d.all) || !SK_RESERVE(allocator, &pushes->dealt, d.all))
+        return false;
+    d.a_piece = d.all / MOST_PIECES + 1 > PAIRS_AT_ONCE ? d.all / MOST_PIECES + 1 : PAIRS_AT_ONCE;
+    sk_touch_choose_sides(touch);
+    in_pieces(&d, set_some);
+    cut_slabs(&d);
+    in_pieces(&d, classify_some);
+    size_t at = 0;
+    for (int of = 0; of < SK_PUSH_CLASSES; of++) {
+        pushes->start[of] = at;
+        for (int piece = 0; piece < MOST_PIECES; piece++) {
+            const size_t count = d.place[piece][of];
+            d.place[piece][of] = at;
+            at += count;
+        }
+    }
+    pushes->start[SK_PUSH_CLASSES] = at;
+    in_pieces(&d, deal_some);
+    pushes->known = true;
+    return true;
+}
