@@ -34,6 +34,7 @@ void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *b
     sk_tasks_run(tasks, run_share, &job);
 }
 
+#ifndef SK_ONE_THREAD
 typedef struct pieces_job {
     sk_piece_body *body;
     void *data;
@@ -62,3 +63,4 @@ void sk_parallel_pieces(sk_tasks *tasks, size_t begin, size_t end, size_t grain,
     atomic_init(&job.next, begin);
     sk_tasks_run(tasks, run_pieces, &job);
 }
+#endif

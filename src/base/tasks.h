@@ -33,6 +33,13 @@ void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *b
  * done one takes the next. `thread` is less than sk_tasks_count, and no two that run at once have the same; where there are
  * no tasks, or no more than one piece, it is 0. */
 typedef void sk_piece_body(void *data, int thread, size_t begin, size_t end);
+#ifdef SK_ONE_THREAD // a page without workers: what is called in one place only becomes a part of it (1.6 KB, packed)
+static inline void sk_parallel_pieces(sk_tasks *tasks, size_t begin, size_t end, size_t grain, sk_piece_body *body, void *data) {
+    (void)tasks, (void)grain;
+    if (begin < end) body(data, 0, begin, end);
+}
+#else
 void sk_parallel_pieces(sk_tasks *tasks, size_t begin, size_t end, size_t grain, sk_piece_body *body, void *data);
+#endif
 
 #endif

@@ -49,34 +49,69 @@ static sk_vec3 common_way(const sk_touch *touch) {
  * nothing is changed, so that what slides together is not held back. */
 static sk_vec3 supported_way(const sk_touch *touch, const sk_run *run, const sk_op *op, sk_vec3 way) {
     const sk_vec4 *support = run->vector[SK_SUPPORT];
-    if (!support) return way;
+    if (!support || !*run->supported) return way;
+    uint32_t *held_up = touch->waiting; // nobody waits yet
+    size_t count = 0;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++) {
+        const sk_vec3 n = sk_xyz(sk_load(support, op->packed, touch->slot[v]));
+        if (sk_dot(n, n) > 0) held_up[count++] = (uint32_t)v;
+    }
     for (int pass = 0; pass < 2; pass++)
-        for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-            sk_vec3 n = sk_xyz(sk_load(support, op->packed, touch->slot[v]));
-            if (!(sk_dot(n, n) > 0)) continue;
-            real missing = sk_dot(n, sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), way));
+        for (size_t i = 0; i < count; i++) {
+            const uint32_t v = held_up[i];
+            const sk_vec3 n = sk_xyz(sk_load(support, op->packed, touch->slot[v]));
+            const real missing = sk_dot(n, sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), way));
             if (missing > 0 && missing < (real)1e6) way = sk_add(way, sk_scale(missing, n));
         }
     return way;
 }
 
-/* Loads the places before and after the substep, and finds out what ways lead from one to the other. */
-static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    size_t count = touch->skin.vertex_count;
-    touch->aimed = false;
-    touch->stand = touch->p;
-    sk_touch_load(touch, op->packed);
-    for (size_t v = 0; v < count; v++) touch->q[v] = sk_load(run->vector[SK_X], op->packed, touch->slot[v]);
-    sk_vec3 common = touch->common = supported_way(touch, run, op, common_way(touch));
-    touch->longest = 0;
-    for (size_t v = 0; v < count; v++) {
-        sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), common);
+typedef struct loading {
+    sk_touch *touch;
+    const sk_run *run;
+    const sk_op *op;
+} loading;
+
+static void load_some_ends(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const loading *job = data;
+    for (size_t v = begin; v < end; v++) job->touch->q[v] = sk_load(job->run->vector[SK_X], job->op->packed, job->touch->slot[v]);
+}
+
+/* Threads raise the same number: the most stays, whoever comes first. */
+static void raise_to(real *most, real one) {
+    real now;
+    __atomic_load(most, &now, __ATOMIC_RELAXED);
+    while (one > now && !__atomic_compare_exchange(most, &now, &one, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {}
+}
+
+static void find_some_ways(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    sk_touch *touch = ((const loading *)data)->touch;
+    real longest = 0;
+    for (size_t v = begin; v < end; v++) {
+        sk_vec3 way = sk_sub(sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v])), touch->common);
         real length = sk_length(way);
         if (!(length < (real)1e6)) way = (sk_vec3){0, 0, 0}, length = 0; // blown up: it meets nobody
         touch->way[v] = (sk_vec4){way.x, way.y, way.z, length};
-        touch->longest = sk_max(touch->longest, length);
+        longest = sk_max(longest, length);
         touch->share[v] = touch->next_share[v] = 1;
     }
+    raise_to(&touch->longest, longest);
+}
+
+/* Loads the places before and after the substep, and finds out what ways lead from one to the other. */
+static void load_ways(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    enum { AT_ONCE = 2048 };
+    const size_t count = touch->skin.vertex_count;
+    loading job = {touch, run, op};
+    touch->aimed = false;
+    touch->stand = touch->p;
+    sk_touch_load(touch, op->packed);
+    sk_parallel_pieces(touch->tasks, 0, count, AT_ONCE, load_some_ends, &job);
+    touch->common = supported_way(touch, run, op, common_way(touch));
+    touch->longest = 0;
+    sk_parallel_pieces(touch->tasks, 0, count, AT_ONCE, find_some_ways, &job);
 }
 
 bool sk_touch_search_ways(sk_touch *touch, sk_allocator *allocator) {

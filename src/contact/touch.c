@@ -92,11 +92,25 @@ void sk_touch_copy_start(sk_touch *touch) {
     touch->before = touch->copied;
 }
 
-void sk_touch_load(sk_touch *touch, size_t packed) {
-    for (size_t v = 0; v < touch->skin.vertex_count && !touch->loaded; v++) {
-        touch->p[v] = sk_load(touch->before, packed, touch->slot[v]);
-        touch->inverse[v] = touch->p[v].w = sk_load(touch->x, packed, touch->slot[v]).w; // a method's own copy has no masses
+typedef struct loading {
+    sk_touch *touch;
+    size_t packed;
+} loading;
+
+static void load_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const loading *job = data;
+    sk_touch *touch = job->touch;
+    for (size_t v = begin; v < end; v++) {
+        touch->p[v] = sk_load(touch->before, job->packed, touch->slot[v]);
+        touch->inverse[v] = touch->p[v].w = sk_load(touch->x, job->packed, touch->slot[v]).w; // a method's own copy has no masses
     }
+}
+
+void sk_touch_load(sk_touch *touch, size_t packed) {
+    enum { AT_ONCE = 2048 };
+    loading job = {touch, packed};
+    if (!touch->loaded) sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, AT_ONCE, load_some, &job);
     touch->loaded = true;
 }
 
