@@ -19,8 +19,8 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static skein_world *sheet(int side, bool touching, double tilt, const char *pins) {
-    skein_world *world = bench_world(1);
+static skein_world *sheet(int side, bool touching, double tilt, const char *pins, int threads) {
+    skein_world *world = bench_world(threads);
     bench_need(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
     bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
     bench_need(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
@@ -35,39 +35,58 @@ static skein_world *sheet(int side, bool touching, double tilt, const char *pins
     return world;
 }
 
-/* Each frame is timed alone: the worst one is the impact. */
+static double seconds_of_step(skein_world *world) {
+    const double start = seconds_now();
+    bench_step(world);
+    return seconds_now() - start;
+}
+
+static void report_threads(const char *name, const char *size, const double seconds[2]) {
+    bench_report(&(bench_result){.name = name,
+                                 .size = size,
+                                 .ours = 1e3 * seconds[1],
+                                 .unit = "ms/frame",
+                                 .other = "one thread",
+                                 .theirs = 1e3 * seconds[0],
+                                 .faster = 1.5,
+                                 .note = "frame by frame in turns"});
+}
+
+/* Each frame is timed alone: the worst one is the impact. A second world takes two threads. */
 static void heap(int side, double tilt) {
     char size[40];
     snprintf(size, sizeof size, "%d x %d, %g deg", side, side, tilt);
-    int frames = bench_quick ? 10 : 600;
-    skein_world *world = sheet(side, true, tilt, "");
-    double sum = 0, worst = 0;
+    const int frames = bench_quick ? 10 : 600, last = bench_quick ? 5 : 60; // those at rest
+    skein_world *world[2];
+    for (int t = 0; t < 2; t++) world[t] = sheet(side, true, tilt, "", 1 + t);
+    double sum[2] = {0, 0}, rest[2] = {0, 0}, worst = 0;
     uint64_t crossings = 0;
     for (int i = 0; i < frames; i++) {
+        for (int t = 0; t < 2; t++) {
+            const double seconds = seconds_of_step(world[t]);
+            sum[t] += seconds / frames;
+            if (i >= frames - last) rest[t] += seconds / last;
+            if (!t && seconds > worst) worst = seconds;
+        }
         skein_statistics s;
-        double start = seconds_now();
-        bench_step(world);
-        double seconds = seconds_now() - start;
-        sum += seconds;
-        if (seconds > worst) worst = seconds;
-        bench_need(world, skein_world_statistics(world, &s));
+        bench_need(world[0], skein_world_statistics(world[0], &s));
         crossings += s.crossings;
     }
-    bench_job job = {.run = bench_step, .data = world};
-    double rest;
-    bench_measure(&job, 1, 0.2, &rest);
+    if (skein_world_hash(world[0]) != skein_world_hash(world[1])) bench_fault("heap, %s: two threads have other bits", size);
     report("heap, crossings", size, (double)crossings, "in all", 1);
-    report("heap, mean", size, 1e3 * sum / frames, "ms/frame", 25);
+    report("heap, mean", size, 1e3 * sum[0], "ms/frame", 25);
     report("heap, worst", size, 1e3 * worst, "ms/frame", 100);
-    report("heap, at rest", size, 1e3 * rest, "ms/frame", 16.7);
-    skein_world_destroy(world);
+    report("heap, at rest", size, 1e3 * rest[0], "ms/frame", 16.7);
+    report_threads("heap, two threads", size, sum);
+    report_threads("heap at rest, two threads", size, rest);
+    for (int t = 0; t < 2; t++) skein_world_destroy(world[t]);
 }
 
 /* A sheet that hangs still: pairs are kept, and each substep looks whether they may be. */
 static void nothing_touches(int side) {
     char size[40];
     snprintf(size, sizeof size, "%d x %d", side, side);
-    skein_world *touching = sheet(side, true, 0, "top edge"), *free = sheet(side, false, 0, "top edge");
+    skein_world *touching = sheet(side, true, 0, "top edge", 1), *free = sheet(side, false, 0, "top edge", 1);
     for (int i = 0; i < (bench_quick ? 5 : 300); i++) bench_step(touching), bench_step(free);
     bench_job jobs[] = {{.run = bench_step, .data = touching}, {.run = bench_step, .data = free}};
     double seconds[2];
@@ -91,7 +110,7 @@ static void swings(int side) {
     const int frames = bench_quick ? 5 : 60;
     double seconds[2] = {0, 0};
     for (int touching = 0; touching < 2; touching++) {
-        skein_world *world = sheet(side, touching, 90, "top corners");
+        skein_world *world = sheet(side, touching, 90, "top corners", 1);
         double start = seconds_now();
         for (int i = 0; i < frames; i++) bench_step(world);
         seconds[touching] = (seconds_now() - start) / frames;

@@ -25,23 +25,33 @@
 
 /* ---- ways ---- */
 
+/* A mean of ways. */
+typedef struct mean_way {
+    double x, y, z;
+    size_t count;
+} mean_way;
+
+static inline void add_way(mean_way *mean, sk_vec3 way) {
+    mean->x += (double)way.x, mean->y += (double)way.y, mean->z += (double)way.z;
+    mean->count++;
+}
+
+static sk_vec3 mean_of(const mean_way *sum) {
+    const double share = sum->count ? 1 / (double)sum->count : 0;
+    return (sk_vec3){(real)(share * sum->x), (real)(share * sum->y), (real)(share * sum->z)};
+}
+
 /* What all vertices that are free go together, in the mean, or what pinned ones do, whichever is less. */
 static sk_vec3 common_way(const sk_touch *touch) {
-    double sum[2][3] = {{0}}; // of free ones, and of pinned ones
-    size_t count[2] = {0, 0};
+    mean_way of_free = {0, 0, 0, 0}, of_pinned = {0, 0, 0, 0};
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
-        sk_vec3 way = sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v]));
+        const sk_vec3 way = sk_sub(sk_xyz(touch->q[v]), sk_xyz(touch->p[v]));
         if (!(sk_dot(way, way) < (real)1e12)) continue; // blown up
-        const bool pinned = !(touch->inverse[v] > 0);
-        sum[pinned][0] += (double)way.x, sum[pinned][1] += (double)way.y, sum[pinned][2] += (double)way.z;
-        count[pinned]++;
+        if (touch->inverse[v] > 0) add_way(&of_free, way);
+        else add_way(&of_pinned, way);
     }
-    sk_vec3 mean[2];
-    for (int k = 0; k < 2; k++) {
-        const double share = count[k] ? 1 / (double)count[k] : 0;
-        mean[k] = (sk_vec3){(real)(share * sum[k][0]), (real)(share * sum[k][1]), (real)(share * sum[k][2])};
-    }
-    return count[1] && sk_dot(mean[1], mean[1]) < sk_dot(mean[0], mean[0]) ? mean[1] : mean[0];
+    const sk_vec3 with_pins = mean_of(&of_pinned), mean = mean_of(&of_free);
+    return of_pinned.count && sk_dot(with_pins, with_pins) < sk_dot(mean, mean) ? with_pins : mean;
 }
 
 /* What of a common way leads no one into the collider that holds them up: planes that go along with what falls would

@@ -14,6 +14,7 @@
  * while limits are swept. One after the other: by collider, edges before triangles, in the skin's order. */
 #include <string.h>
 
+#include "base/tasks.h"
 #include "colliders/trimesh.h"
 #include "contact/touch.h"
 
@@ -265,32 +266,56 @@ static bool find_planes(const meeting *m) {
     return any;
 }
 
+typedef struct blocking {
+    sk_touch *touch;
+    const sk_vec4 *x;
+    size_t packed;
+} blocking;
+
 /* Finds what is around those of sixteen slots who can touch. */
-static void find_blocks(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    sk_vec4 *block = touch->faces.block, *all = block + touch->slots / LANES;
-    *all = (sk_vec4){0, 0, 0, -1};
-    for (size_t first = 0; first < touch->slots; first += LANES) {
-        const real *here = touch->faces.here + first;
-        real x[3][LANES], most = 0;
-        size_t one = 0;
-        if (first < op->packed) memcpy(x, run->vector[SK_X] + first, sizeof x); // as they lie
-        else
-            for (size_t l = 0; l < LANES; l++) {
-                const sk_vec4 at = run->vector[SK_X][first + l];
-                x[0][l] = at.x, x[1][l] = at.y, x[2][l] = at.z;
-            }
-        while (one < LANES && !(here[one] > 0)) one++;
-        const sk_vec3 middle = lane_of((const real(*)[LANES])x, one % LANES);
-        real square[LANES];
+static sk_vec4 block_of(const blocking *job, size_t first) {
+    const real *here = job->touch->faces.here + first;
+    real x[3][LANES];
+    if (first < job->packed) memcpy(x, job->x + first, sizeof x); // as they lie
+    else
         for (size_t l = 0; l < LANES; l++) {
-            const real a = x[0][l] - middle.x, b = x[1][l] - middle.y, c = x[2][l] - middle.z;
-            square[l] = here[l] > 0 ? a * a + b * b + c * c : 0; // who is nobody's may be anywhere
+            const sk_vec4 at = job->x[first + l];
+            x[0][l] = at.x, x[1][l] = at.y, x[2][l] = at.z;
         }
-        for (size_t l = 0; l < LANES; l++) most = sk_max(most, square[l]);
-        *block = (sk_vec4){middle.x, middle.y, middle.z, one < LANES ? (real)1.0001 * sk_sqrt(most) : -1};
+    size_t one = 0;
+    while (one < LANES && !(here[one] > 0)) one++;
+    if (one == LANES) return (sk_vec4){0, 0, 0, -1};
+    const sk_vec3 middle = lane_of((const real(*)[LANES])x, one);
+    sk_quad most = {0, 0, 0, 0};
+    for (size_t l = 0; l < LANES; l += 4) {
+        sk_quad at[3], is_here;
+        memcpy(&is_here, here + l, sizeof is_here);
+        for (int d = 0; d < 3; d++) memcpy(&at[d], x[d] + l, sizeof at[d]);
+        at[0] -= middle.x, at[1] -= middle.y, at[2] -= middle.z;
+        const sk_quad square = at[0] * at[0] + at[1] * at[1] + at[2] * at[2];
+        most = sk_most_quad((sk_quad)((is_here > 0) & (sk_quad_lanes)square), most); // who is nobody's may be anywhere
+    }
+    const real widest = sk_max(sk_max(most[0], most[1]), sk_max(most[2], most[3]));
+    return (sk_vec4){middle.x, middle.y, middle.z, (real)1.0001 * sk_sqrt(widest)};
+}
+
+static void find_some_blocks(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const blocking *job = data;
+    for (size_t b = begin; b < end; b++) job->touch->faces.block[b] = block_of(job, LANES * b);
+}
+
+/* And what is around all of them. */
+static void find_blocks(sk_touch *touch, const sk_run *run, const sk_op *op) {
+    enum { AT_ONCE = 128 };
+    const size_t count = touch->slots / LANES;
+    blocking job = {touch, run->vector[SK_X], op->packed};
+    sk_parallel_pieces(touch->tasks, 0, count, AT_ONCE, find_some_blocks, &job);
+    sk_vec4 *block = touch->faces.block, *all = block + count;
+    *all = (sk_vec4){0, 0, 0, -1};
+    for (; block < all; block++) {
         if (all->w < 0) *all = *block;
-        else if (one < LANES) all->w = sk_max(all->w, (real)1.0001 * (block->w + sk_length(sk_sub(middle, sk_xyz(*all)))));
-        block++;
+        else if (block->w >= 0) all->w = sk_max(all->w, (real)1.0001 * (block->w + sk_length(sk_sub(sk_xyz(*block), sk_xyz(*all)))));
     }
 }
 
