@@ -200,8 +200,9 @@ static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void
     real low = -SK_REAL_MAX;
     for (int c = 0; c < corners; c++) {
         const sk_vec4 plane = touch->faces.plane[v[c]];
+        if (!(plane.w < SK_REAL_MAX)) return;
         const real slope = corners == 2 ? fall(touch, v[c], v[1 - c]) : sk_min(fall(touch, v[c], v[(c + 1) % 3]), fall(touch, v[c], v[(c + 2) % 3]));
-        if (!(plane.w < SK_REAL_MAX) || !(slope < 0)) return;
+        if (!(slope < 0)) return;
         low = sk_max(low, plane.w + slope);
         b->end[b->count][c & 1] = (tangent){(real)(c & 1), plane.w, c ? -slope : slope};
     }
