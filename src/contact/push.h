@@ -31,8 +31,8 @@ typedef struct sk_push_list {
         uint32_t *data;
         size_t count, capacity;
     } dealt; /* pairs by class */
-    size_t start[65]; /* of classes among those dealt */
-    bool known; /* they are of this substep */
+    size_t start[SK_PUSH_CLASSES + 1]; /* of classes among those dealt */
+    bool known;                        /* they are of this substep */
 } sk_push_list;
 
 #endif

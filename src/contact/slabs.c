@@ -62,21 +62,18 @@ static void set_some(void *data, int thread, size_t begin, size_t end) {
 /* Cuts the longest extent of where pairs begin, and no pair that comes or goes moves a cut: at multiples of a power of two. */
 static void cut_slabs(deal *d) {
     const sk_push *pair = d->touch->pushes.pair.data;
-    real longest = 0;
-    int axis = 0;
-    for (d->axis = 0; d->axis < 3; d->axis++) {
-        real least = SK_REAL_MAX, most = -SK_REAL_MAX;
-        for (size_t i = 0; i < d->all; i++) {
-            const real at = along(d, pair[i].corner[0]);
-            least = sk_min(at, least), most = sk_max(at, most);
-        }
-        if (most - least > longest) longest = most - least, axis = d->axis, d->first = least;
+    sk_quad least = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX, 0}, most = -least;
+    for (size_t i = 0; i < d->all; i++) {
+        const sk_quad at = sk_quad_at(&d->touch->p[pair[i].corner[0]]);
+        least = sk_least_quad(at, least), most = sk_most_quad(at, most);
     }
-    d->axis = axis;
+    const sk_quad extent = most - least;
+    d->axis = extent[0] >= extent[1] && extent[0] >= extent[2] ? 0 : extent[1] >= extent[2] ? 1 : 2;
+    const real longest = extent[d->axis];
     int exponent = 0;
     if (longest > (real)1e-9 && longest < (real)1e9) frexp((double)longest, &exponent);
     d->per = (real)ldexp(SK_MOST_SLABS, -exponent);
-    d->first = (real)floor((double)(d->per * d->first));
+    d->first = (real)floor((double)(d->per * least[d->axis]));
 }
 
 /* In which class of its sort a pair with these corners is. */
