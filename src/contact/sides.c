@@ -65,7 +65,7 @@ static void choose_side(const sk_touch *touch, sk_pairs *pairs, int sort, size_t
 }
 
 void sk_touch_choose_side(sk_touch *touch, int sort, uint32_t entry) {
-    touch->tangle.forced = true; // it may be the wrong one all the same
+    __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED); // it may be the wrong one all the same; threads choose for several
     choose_side(touch, entry & 1 ? &touch->late[sort] : &touch->kept[sort], sort, entry / 2);
 }
 

@@ -21,22 +21,17 @@ typedef struct deal {
     size_t place[MOST_PIECES][SK_PUSH_CLASSES]; /* how many are dealt there, and then where */
 } deal;
 
-/* The pair that is the i-th of all, corners first. */
-static const sk_pairs *pair_at(const sk_touch *touch, size_t i, int *sort, size_t *k) {
-    const size_t corners = touch->near[SK_CORNERS].count;
-    *sort = i < corners ? SK_CORNERS : SK_EDGES;
-    const uint32_t entry = touch->near[*sort].data[*sort == SK_EDGES ? i - corners : i];
-    *k = entry / 2;
-    return sk_pairs_of(touch, *sort, entry);
-}
-
-static void set_push(const deal *d, const sk_pairs *pairs, int sort, size_t k, sk_push *push) {
-    const sk_touch *touch = d->touch;
+static void set_push(const deal *d, int sort, uint32_t entry, sk_push *push) {
+    sk_touch *touch = d->touch;
+    const sk_pairs *pairs = sk_pairs_of(touch, sort, entry);
+    const size_t k = entry / 2;
+    const real distance = pairs->distance[k];
+    if (distance < SK_NO_GAP * touch->thickness) sk_touch_choose_side(touch, sort, entry);
     for (int c = 0; c < 4; c++) push->corner[c] = pairs->corner[c][k];
     for (int c = 0; c < 3; c++) push->normal[c] = pairs->normal[c][k];
     sk_weights_of(pairs, sort, k, push->weight);
     // what has come too near in some other way gets its thickness back over some substeps, not as a blow
-    const real distance = pairs->distance[k], goal = sk_pair_goal(touch, push->corner[0], push->corner[2], pairs->thickness[k], distance);
+    const real goal = sk_pair_goal(touch, push->corner[0], push->corner[2], pairs->thickness[k], distance);
     push->wanted = sk_min(goal, distance + d->gain);
     push->friction = sk_pair_friction(touch, push->corner[0], push->corner[2], d->friction);
     const sk_quad before = sk_quad_sum(touch->p, push->corner, push->weight);
@@ -50,12 +45,12 @@ static real along(const deal *d, uint32_t vertex) {
 
 static void set_some(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
-    deal *d = data;
+    const deal *d = data;
+    const sk_pair_list *near = d->touch->near;
     for (size_t i = begin; i < end; i++) {
-        int sort;
-        size_t k;
-        const sk_pairs *pairs = pair_at(d->touch, i, &sort, &k);
-        set_push(d, pairs, sort, k, &d->touch->pushes.pair.data[i]);
+        const size_t corners = near[SK_CORNERS].count;
+        const int sort = i < corners ? SK_CORNERS : SK_EDGES;
+        set_push(d, sort, near[sort].data[sort == SK_EDGES ? i - corners : i], &d->touch->pushes.pair.data[i]);
     }
 }
 
@@ -118,7 +113,6 @@ bool sk_touch_deal(sk_touch *touch, sk_allocator *allocator, real gain, real fri
     if (!SK_RESERVE(allocator, &pushes->pair, d.all) || !SK_RESERVE(allocator, &pushes->class_of, d.all) || !SK_RESERVE(allocator, &pushes->dealt, d.all))
         return false;
     d.a_piece = d.all / MOST_PIECES + 1 > PAIRS_AT_ONCE ? d.all / MOST_PIECES + 1 : PAIRS_AT_ONCE;
-    sk_touch_choose_sides(touch);
     in_pieces(&d, set_some);
     cut_slabs(&d);
     in_pieces(&d, classify_some);
