@@ -39,6 +39,15 @@ static double shared_heap(int threads, uint64_t *seed) {
     return heap(1, seed) * (threads > 1 ? 4.6 : 1);
 }
 
+/* A heap that lies still, in which every fourth step searches; two threads gain a quarter. */
+static double searching(int threads, uint64_t *seed) {
+    return ((*seed)++ % 4 ? 19e-3 : 29e-3) / (threads > 1 ? 1.3 : 1);
+}
+/* The same, where they gain next to nothing. */
+static double searching_alone(int threads, uint64_t *seed) {
+    return ((*seed)++ % 4 ? 19e-3 : 29e-3) / (threads > 1 ? 1.05 : 1);
+}
+
 /* Steps on a machine; returns the seconds that they took, and how many threads the last one had. */
 static double run(sk_pace *pace, machine *takes, int steps, int *threads) {
     uint64_t seed = 7;
@@ -118,6 +127,26 @@ static void it_follows_the_work(void **state) {
     }
 }
 
+static void steps_that_search_mislead_nobody(void **state) {
+    (void)state;
+    sk_pace pace;
+    int threads;
+    for (int first = 0; first < 4; first++) {
+        uint64_t seed = (uint64_t)first; // where among four steps it begins
+        sk_pace_start(&pace, 2, false);
+        for (int i = 0; i < first; i++) sk_pace_note(&pace, searching(sk_pace_threads(&pace), &seed));
+        run(&pace, searching, 20, &threads);
+        for (int i = 0; i < 50; i++) {
+            const double by_two = 21.5e-3 / 1.3;
+            assert_under(run(&pace, searching, 100, &threads), 103 * by_two);
+        }
+        sk_pace_start(&pace, 2, false);
+        for (int i = 0; i < first; i++) sk_pace_note(&pace, searching_alone(sk_pace_threads(&pace), &seed));
+        run(&pace, searching_alone, 2000, &threads);
+        assert_int_equal(threads, 1);
+    }
+}
+
 static void all_threads_can_be_had_always(void **state) {
     (void)state;
     sk_pace pace;
@@ -134,6 +163,7 @@ int main(void) {
         cmocka_unit_test(threads_that_cost_are_not),
         cmocka_unit_test(it_follows_the_machine),
         cmocka_unit_test(it_follows_the_work),
+        cmocka_unit_test(steps_that_search_mislead_nobody),
         cmocka_unit_test(all_threads_can_be_had_always),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

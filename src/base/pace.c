@@ -3,8 +3,22 @@
 
 #include <string.h>
 
+#ifdef SK_ONE_THREAD // there is nothing to try
+void sk_pace_start(sk_pace *pace, int most, bool always) {
+    (void)most, (void)always;
+    memset(pace, 0, sizeof *pace);
+}
+
+int sk_pace_threads(const sk_pace *pace) {
+    (void)pace;
+    return 1;
+}
+
+void sk_pace_note(sk_pace *pace, double seconds) {
+    (void)pace, (void)seconds;
+}
+#else
 enum {
-    TRIAL = 2,        /* steps */
     FIRST_TRIAL = 4,  /* steps on a level before others are tried */
     LEAST_PAUSE = 32, /* steps between trials, doubled after each trial that failed or did not last, */
     MOST_PAUSE = 1024, /* up to this */
@@ -44,26 +58,34 @@ static void pause_longer(sk_pace *pace) {
 
 static void settle(sk_pace *pace, int level) {
     pace->level = level;
-    pace->stayed = 0;
+    pace->stayed = pace->known = 0;
 }
 
-/* Tries a neighbour of the present level, upwards and downwards in turn; the last step has taken so long. */
-static void begin_trial(sk_pace *pace, double seconds) {
+/* What the last steps took, in the mean. */
+static double mean_of_recent(const sk_pace *pace) {
+    const int count = pace->known < SK_PACE_TRIAL ? pace->known : SK_PACE_TRIAL;
+    double sum = 0;
+    for (int i = 0; i < count; i++) sum += pace->recent[i];
+    return sum / count;
+}
+
+/* Tries a neighbour of the present level, upwards and downwards in turn. */
+static void begin_trial(sk_pace *pace) {
     int next = pace->level + (pace->up ? 1 : -1);
     pace->up = !pace->up;
     if (next < 0 || next >= pace->levels) next = 2 * pace->level - next;
     if (next < 0 || next >= pace->levels) return;
     if (next > pace->level && pace->mean[pace->level] < least_work) return;
     pace->trying = next;
-    pace->left = TRIAL;
+    pace->left = SK_PACE_TRIAL;
     pace->tried = 0;
     pace->trial = 0;
-    pace->before = seconds;
+    pace->before = mean_of_recent(pace);
 }
 
 /* Holds the trial against what a step with the old number took halfway through it. */
-static void end_trial(sk_pace *pace, double after) {
-    double now = (pace->before + after) / 2, then = pace->trial / pace->tried;
+static void end_trial(sk_pace *pace) {
+    double now = (pace->before + mean_of_recent(pace)) / 2, then = pace->trial / pace->tried;
     bool more = pace->trying > pace->level, better = more ? then < least_gain * now : least_gain * then < now;
     pace->judging = false;
     pace->since = 0;
@@ -86,6 +108,7 @@ static void note_trial(sk_pace *pace, double seconds) {
     pace->left--;
     if (seconds > hopeless * pace->before) pace->left = 0;
     pace->judging = !pace->left;
+    if (pace->judging) pace->known = 0;
 }
 
 /* Whether steps have other work to do than when it was last decided: two in a row, for one may have been held up. */
@@ -101,8 +124,9 @@ void sk_pace_note(sk_pace *pace, double seconds) {
         note_trial(pace, seconds);
         return;
     }
+    pace->recent[pace->known++ % SK_PACE_TRIAL] = seconds;
     if (pace->judging) {
-        end_trial(pace, seconds);
+        if (pace->known == SK_PACE_TRIAL) end_trial(pace);
         pace->last = seconds;
         return;
     }
@@ -117,7 +141,8 @@ void sk_pace_note(sk_pace *pace, double seconds) {
     }
     if (slower || has_changed(pace, seconds) || --pace->wait <= 0) {
         pace->wait = LEAST_PAUSE;
-        begin_trial(pace, seconds);
+        begin_trial(pace);
     }
     pace->last = seconds;
 }
+#endif

@@ -7,21 +7,27 @@
  * even if every one takes five times as long.
  *
  * What a step has to do changes, too: cloth that falls into a heap has ten times as much in a second. So the steps of a
- * trial are held against the one before it and the one after it, not against a mean of earlier ones; and when steps
- * take twice as long as when it was last decided, or half, it is tried again soon. */
+ * trial are held against those before it and those after it, not against a mean of all earlier ones; and when steps
+ * take twice as long as when it was last decided, or half, it is tried again soon. A heap that lies still searches in every
+ * fourth step, which takes half as much more: so there are as many steps in a trial, before it and after it. */
 #ifndef SK_BASE_PACE_H
 #define SK_BASE_PACE_H
 
 #include <stdbool.h>
 
-enum { SK_PACE_LEVELS = 7 }; /* 1, 2, 4 ... 64 threads */
+enum {
+    SK_PACE_LEVELS = 7, /* 1, 2, 4 ... 64 threads */
+    SK_PACE_TRIAL = 4   /* steps of a trial */
+};
 
 typedef struct sk_pace {
     int levels, level, most;     /* the number of levels, the present one, and the threads of the highest */
     int trying, left;            /* the level that is being tried, and for how many more steps */
-    bool judging;                /* the step after a trial is under way */
+    bool judging;                /* the steps after a trial are under way */
     int tried;                   /* steps of the trial */
-    double before, trial;        /* s: the step before it, and all of its steps */
+    double before, trial;        /* s: a step before it, in the mean, and all of its steps */
+    double recent[SK_PACE_TRIAL]; /* s: the last steps on the present level, since the last trial ended; */
+    int known;                   /* and how many there were */
     double last, judged;         /* s: the last step; and one when it was last decided, 0: never */
     int wait, pause;             /* steps until the next trial, and after a trial that failed */
     int stayed, since;           /* steps on the present level, and since it was last decided */
