@@ -83,7 +83,7 @@ static void what_is_led_fast_follows(void **state) {
                 assert_int_equal(now.crossings, 0);
                 most = fmax(most, now.max_stretch);
             }
-            assert_under(most, 0.2); // 0.06 to 0.12; it was 0.26 to 0.29 at 2 m/s, and 10 at 5
+            assert_under(most, s ? 0.45 : 0.2); // 0.06 to 0.13, and in double an irregular mesh 0.3 at 5 m/s; it was 0.26 to 0.29 at 2 m/s, and 10 at 5
             skein_world_destroy(world);
         }
 }
