@@ -2,9 +2,7 @@
  * in common. */
 #include "near_pairs.h"
 
-enum { SIDE = SANITIZED ? 24 : 40, STEPS = SANITIZED ? 8 : 30, ROUNDS = 4 };
-
-static const int round_of_class[ROUNDS + 1] = {0, SK_MOST_SLABS, SK_MOST_SLABS * 3 / 2, SK_SLAB_CLASSES - 1, SK_SLAB_CLASSES};
+enum { SIDE = SANITIZED ? 24 : 40, STEPS = SANITIZED ? 8 : 30 };
 
 /* A sheet that folds as it falls on another one, both on a ball; wider by far along one axis, and somewhere. Or both begin in one place. */
 static skein_world *folding(const double size[2], double turn, const double at[3], int threads, int apart) {
@@ -36,7 +34,7 @@ static void mark(const sk_push *pair, int class, int *of) {
 }
 
 /* How many pairs there are in each round. */
-static void check_dealt(const sk_touch *touch, size_t in_round[ROUNDS]) {
+static void check_dealt(const sk_touch *touch, size_t in_round[SK_SLAB_ROUNDS]) {
     const sk_push_list *pushes = &touch->pushes;
     const size_t corners = touch->near[SK_CORNERS].count, all = corners + touch->near[SK_EDGES].count;
     assert_int_equal(pushes->start[0], 0);
@@ -46,15 +44,16 @@ static void check_dealt(const sk_touch *touch, size_t in_round[ROUNDS]) {
     int *of = malloc((touch->skin.vertex_count + 1) * sizeof *of);
     assert_true(seen && of);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
-        for (int r = 0; r < ROUNDS; r++) {
+        for (int r = 0; r < SK_SLAB_ROUNDS; r++) {
             for (size_t v = 0; v <= touch->skin.vertex_count; v++) of[v] = -1;
-            for (int class = sort * SK_SLAB_CLASSES + round_of_class[r]; class < sort * SK_SLAB_CLASSES + round_of_class[r + 1]; class++)
+            const size_t first = (size_t)sort * SK_SLAB_CLASSES;
+            for (size_t class = first + sk_slab_round[r]; class < first + sk_slab_round[r + 1]; class++)
                 for (size_t i = pushes->start[class]; i < pushes->start[class + 1]; i++) {
                     const uint32_t pair = pushes->dealt.data[i];
                     assert_true(pair < all && !seen[pair]);
                     assert_true(i == pushes->start[class] || pushes->dealt.data[i - 1] < pair);
                     seen[pair] = true;
-                    mark(&pushes->pair.data[pair], class, of);
+                    mark(&pushes->pair.data[pair], (int)class, of);
                     in_round[r]++;
                 }
         }
@@ -69,7 +68,7 @@ static void what_is_pushed_together_has_no_corner_in_common(void **state) {
     for (size_t c = 0; c < COUNT(turns); c++) {
         skein_world *world = folding(sizes[c], turns[c], places[c], 1, 1);
         (void)statistics_of(world);
-        size_t in_round[ROUNDS] = {0}, looked = 0;
+        size_t in_round[SK_SLAB_ROUNDS] = {0}, looked = 0;
         for (int i = 0; i < STEPS; i++) {
             steps(world, 1, 1.0 / 60);
             const sk_touch *touch = touch_of(world);
@@ -78,7 +77,7 @@ static void what_is_pushed_together_has_no_corner_in_common(void **state) {
             looked++;
         }
         assert_true(looked > 2);
-        for (int r = 0; r < ROUNDS - 1 && c < 3; r++) assert_true(in_round[r] > 100); // a thing of millimetres has few cuts
+        for (int r = 0; r < SK_SLAB_ROUNDS - 1 && c < 3; r++) assert_true(in_round[r] > 100); // a thing of millimetres has few cuts
         skein_world_destroy(world);
     }
 }

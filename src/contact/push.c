@@ -105,10 +105,9 @@ static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
     }
     pushing job = {touch, run, op};
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, VERTICES_AT_ONCE, load_some, &job);
-    static const size_t round[] = {0, SK_MOST_SLABS, SK_MOST_SLABS * 3 / 2, SK_SLAB_CLASSES - 1, SK_SLAB_CLASSES};
     for (size_t sort = 0; sort < SK_PUSH_CLASSES; sort += SK_SLAB_CLASSES)
-        for (size_t r = 0; r + 1 < sizeof round / sizeof *round; r++) {
-            const size_t begin = sort + round[r], end = sort + round[r + 1], count = touch->pushes.start[end] - touch->pushes.start[begin];
+        for (int r = 0; r < SK_SLAB_ROUNDS; r++) {
+            const size_t begin = sort + sk_slab_round[r], end = sort + sk_slab_round[r + 1], count = touch->pushes.start[end] - touch->pushes.start[begin];
             sk_parallel_pieces(touch->tasks, begin, end, count < PAIRS_AT_ONCE ? end - begin : 1, push_some, &job);
         }
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, VERTICES_AT_ONCE, store_some, &job);

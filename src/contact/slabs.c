@@ -71,6 +71,8 @@ static void cut_slabs(deal *d) {
     d->first = (real)floor((double)(d->per * least[d->axis]));
 }
 
+const size_t sk_slab_round[] = {0, SK_MOST_SLABS, SK_MOST_SLABS * 3 / 2, SK_SLAB_CLASSES - 1, SK_SLAB_CLASSES};
+
 /* In which class of its sort a pair with these corners is. */
 static int class_of(const deal *d, const uint32_t corner[4]) {
     int least = SK_MOST_SLABS, most = 0;
