@@ -276,25 +276,38 @@ static void bits_stay_and_names_count(void **state) {
 }
 
 /* Driven at a sheet that hangs from its upper edge, which goes with it: a corner tore it, 500 to 700 %, and a small ball went through. */
+static seen watch_driven(bool ball, double speed) {
+    static const double turn[3] = {33, 48, 2}, still[3] = {0, 0, 0};
+    skein_world *world = new_contact_world("xpbd", 10);
+    shape s = {.halves = {0.15, 0.15, 0.15}, .centre = {0.01, 1, -0.6}};
+    if (ball) s = (shape){.radius = 0.006, .centre = {0.011, 1.0007, -0.1}};
+    turn_shape(&s, ball ? still : turn);
+    const vec3 velocity = {0, 0, speed};
+    if (ball)
+        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", s.radius), SKEIN_VEC3("centre", s.centre.x, s.centre.y, s.centre.z),
+                                                                    SKEIN_VEC3("motion.velocity", 0, 0, speed)), NULL));
+    else add_box(world, "box", &s, turn, velocity);
+    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", 90, 0, 0),
+                                                                  SKEIN_TEXT("pins", "top edge")), NULL));
+    const seen found = watch(world, s, velocity, (int)((ball ? 0.3 : 0.9) / step_length / speed));
+    skein_world_destroy(world);
+    return found;
+}
+
+/* Never nearer at any of three speeds; longer than that in their mean: of a single one, chance doubles the worst edge of
+   the worst frame (of 18 at 0.96 to 1.04 times as fast, 17 had 15 to 21 %, and one had 32). */
 static void what_is_driven_at_a_sheet_takes_it_along(void **state) {
     (void)state;
-    static const double turn[3] = {33, 48, 2}, still[3] = {0, 0, 0};
     for (int ball = 0; ball < 2; ball++)
         for (int speed = 1; speed <= 4; speed += 3) {
-            skein_world *world = new_contact_world("xpbd", 10);
-            shape s = {.halves = {0.15, 0.15, 0.15}, .centre = {0.01, 1, -0.6}};
-            if (ball) s = (shape){.radius = 0.006, .centre = {0.011, 1.0007, -0.1}};
-            turn_shape(&s, ball ? still : turn);
-            const vec3 velocity = {0, 0, speed};
-            if (ball)
-                OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", s.radius), SKEIN_VEC3("centre", s.centre.x, s.centre.y, s.centre.z),
-                                                                            SKEIN_VEC3("motion.velocity", 0, 0, speed)), NULL));
-            else add_box(world, "box", &s, turn, velocity);
-            OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", 90, 0, 0),
-                                                                          SKEIN_TEXT("pins", "top edge")), NULL));
-            const seen found = watch(world, s, velocity, (int)((ball ? 0.3 : 0.9) / step_length / speed));
-            expect(ball ? "ball" : "corner", found, ball ? 0.001 : -0.003, ball ? 0.001 : -0.003, 0.3);
-            skein_world_destroy(world);
+            seen all = {.least = INFINITY, .last = INFINITY};
+            double logs = 0;
+            for (int k = -1; k <= 1; k++) {
+                const seen found = watch_driven(ball, (1 + 0.03 * k) * speed);
+                all.least = fmin(all.least, found.least), all.last = fmin(all.last, found.last), logs += log(found.stretch);
+            }
+            all.stretch = exp(logs / 3);
+            expect(ball ? "ball" : "corner", all, ball ? 0.001 : -0.003, ball ? 0.001 : -0.003, speed == 1 ? 0.1 : 0.25);
         }
 }
 
