@@ -78,7 +78,35 @@ static void sheets_leave_each_other(void **state) {
     assert_true(stay <= 2); // one today, which gravity pulls into folds; it was one in three
 }
 
+static void add_thrown(skein_world *world, int columns, int rows, double size, const char *fabric) {
+    const double x = some(-0.4, 0.4), y = 0.2 + some(-0.3, 0.3), z = some(-0.3, 0.3), pitch = some(0, 360), yaw = some(0, 360), roll = some(0, 360);
+    const double u = some(-1, 1), v = some(-1, 1), w = some(-1, 1);
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", columns, rows), SKEIN_PAIR("size", size * (columns - 1) / (rows - 1), size),
+                                            SKEIN_VEC3("position", x, y, z), SKEIN_VEC3("velocity", u, v, w),
+                                            SKEIN_VEC3("rotation", pitch, yaw, roll), SKEIN_TEXT("fabric", fabric)),
+                             NULL));
+}
+
+/* They are led apart before they lie in one heap: nothing leads out of its folds. */
+static void sheets_that_move_leave_each_other(void **state) {
+    (void)state;
+    enum { PAIRS = 36 };
+    int begun = 0, stay = 0;
+    for (int number = 0; number < PAIRS; number++) {
+        skein_world *world = begin_world(number, true);
+        add_thrown(world, 45, 29, 0.7, "wool");
+        add_thrown(world, 24, 24, 0.6, "silk");
+        if (!crossings_of(world)) skein_world_destroy(world);
+        else begun++, stay += !come_apart(world, number, true, 0);
+    }
+    if (begun < 10 || stay > 2) fprintf(stderr, "%d of %d stay\n", stay, begun);
+    assert_true(begun >= 10);
+    assert_true(stay <= 2); // one at most today, in both precisions; it was six
+}
+
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sheets_leave_solids), cmocka_unit_test(sheets_leave_each_other)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sheets_leave_solids), cmocka_unit_test(sheets_leave_each_other),
+                                       cmocka_unit_test(sheets_that_move_leave_each_other)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -32,6 +32,7 @@
 
 #include "base/memory.h"
 #include "base/vector.h"
+#include "plan/op.h"
 
 /* An edge that goes through a triangle: numbers of a skin. */
 typedef struct sk_crossing {
@@ -64,6 +65,8 @@ typedef struct sk_whole {
     sk_vec3 low, high; /* between these, as it was built */
     /* of a group's first piece */
     bool hollow;           /* not all that go through each other in it are filled */
+    bool hangs;            /* a sheet of it is pinned */
+    double weight, motion; /* kg, and twice its kinetic energy, J */
     /* of solids, or of a group's first piece (impact.c) */
     bool held;             /* somebody of it is pinned */
     double momentum[3];    /* kg m/s; of a group: what it has lost */
@@ -96,7 +99,7 @@ struct sk_touch;
 bool sk_tangle_reserve(struct sk_touch *touch, sk_allocator *allocator);
 /* Finds out what is tangled where all are before a substep, unless nothing can be, and where it is led by `step`, m.
  * `known`: all are where the last bound has left them. False when there is no memory. */
-bool sk_tangle_look(struct sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x, size_t packed, real step, bool known);
+bool sk_tangle_look(struct sk_touch *touch, const sk_run *run, const sk_op *op, real step, bool known);
 /* Leads vertices by slots apart: x, and `before` with it, if that is what velocities are found from. */
 void sk_tangle_lead(const struct sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t packed);
 /* A bound has ended at places x, by slots: `keeps` if only what is pinned may have gone through something. `last`: of its

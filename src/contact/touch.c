@@ -303,7 +303,7 @@ static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
     const real most = (real)0.25 * touch->thickness, step = (real)(params_of(op)->recovery * op->dt);
     touch->tangle.same = is_known(touch, run);
     if (!(step > 0)) return true;
-    return sk_tangle_look(touch, run->allocator, run->vector[SK_X], op->packed, sk_min(step, most), is_known(touch, run));
+    return sk_tangle_look(touch, run, op, sk_min(step, most), is_known(touch, run));
 }
 
 /* Searches where that is needed, and looks at all pairs. */
