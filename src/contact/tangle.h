@@ -20,7 +20,8 @@
  *
  * Neighbours hold back who is led alone. So what crossings of two pieces say together leads these as wholes, too: solids out of each
  * other, with all that is in them; of a solid that a sheet cuts in two the solid to one side, and the part of the sheet that is inside
- * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it. Where what the crossings of
+ * to the other; and of two sheets each. Two that cross along a line which divides neither of them go along it, and
+ * sheets of which none is pinned go as fast as they move, if that is more: in one heap, nothing would lead out of its folds. Where what the crossings of
  * two solids say adds up to little, they lead to all sides, and contact of all around holds both where they are: then there is none
  * between these two, and they go away from where they cross, or, if all in the group are filled, by the shortest way that one of their faces looks along (way_out.c). Meanwhile they come no nearer (impact.c). Where solids have faces in one plane, the
  * later one is taken to be a little aside (sides.c), or no edge would go through anything.
