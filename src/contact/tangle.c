@@ -363,18 +363,18 @@ static void find_motion(sk_touch *touch, const sk_run *run, const sk_op *op) {
         sk_whole *group = &touch->tangle.whole[sk_union_root(touch->tangle.group, skin->piece[v])];
         const sk_vec3 velocity = sk_xyz(sk_load(run->vector[SK_V], op->packed, touch->slot[v]));
         const double mass = 1 / (double)touch->p[v].w;
-        group->weight += mass, group->motion += mass * (double)sk_dot(velocity, velocity);
+        group->mass_of_all += mass, group->motion += mass * (double)sk_dot(velocity, velocity);
     }
 }
 
 /* How many times sooner than others sheets of a group are led apart as wholes: as fast as all of it moves, and up to four times. Sheets that
  * are thrown through each other fall into one heap meanwhile, and out of its folds nothing leads. (Of 80 pairs of 24 x 24 and 22 x 22 with up
- * to 1 m/s and a floor, 4, 8 and 20 substeps, 14 stayed so, with 2,500 crossings in all; with four times, however fast, 3, and 15 crossings;
+ * to 3 m/s and a floor, 4, 8 and 20 substeps, 14 stayed so, with 2,500 crossings in all; with four times, however fast, 3, and 15 crossings;
  * but two that stood still had 0.19 J by then.) What is pinned cannot go there: with this, pairs of which one is had three times the energy. */
 static real find_sooner(const sk_whole *group, real step, double dt) {
     const real most = 4;
-    if (group->hangs || !(group->weight > 0)) return 1;
-    return sk_max(1, sk_min(most, (real)(sqrt(group->motion / group->weight) * dt) / step));
+    if (group->hangs || !(group->mass_of_all > 0)) return 1;
+    return sk_max(1, sk_min(most, (real)(sqrt(group->motion / group->mass_of_all) * dt) / step));
 }
 
 /* Leads what goes through each other apart as wholes: deep in each other, crossings lead to all sides, and neighbours hold back who is

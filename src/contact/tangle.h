@@ -67,7 +67,7 @@ typedef struct sk_whole {
     /* of a group's first piece */
     bool hollow;           /* not all that go through each other in it are filled */
     bool hangs;            /* a sheet of it is pinned */
-    double weight, motion; /* kg, and twice its kinetic energy, J */
+    double mass_of_all, motion; /* kg, and twice its kinetic energy, J */
     /* of solids, or of a group's first piece (impact.c) */
     bool held;             /* somebody of it is pinned */
     double momentum[3];    /* kg m/s; of a group: what it has lost */
