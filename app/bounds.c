@@ -77,5 +77,6 @@ int app_bounds_end(const app_arguments *arguments, int status) {
 
 void app_bounds_explain(skein_status status) {
     if (status == SKEIN_ERROR_MEMORY && memory)
-        fprintf(stderr, "skein: --max-memory %s is all that it may have: allow more, or make the scene smaller\n", memory);
+        fprintf(stderr, "skein: --max-memory %s is all that it may have: allow more, or make the scene smaller\n",
+                memory);
 }

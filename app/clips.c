@@ -61,8 +61,8 @@ static skein_status gather(const app_clips *clips, const clip *c, skein_surface 
 }
 
 static skein_mesh mesh_of(const app_clips *clips, const skein_surface *s) {
-    return (skein_mesh){clips->positions, s->vertex_count, s->face_sizes, s->face_count, s->face_vertices,
-                        s->face_vertex_count};
+    return (skein_mesh){clips->positions, s->vertex_count,  s->face_sizes,
+                        s->face_count,    s->face_vertices, s->face_vertex_count};
 }
 
 static io_clip describe(const app_clips *clips, const clip *c, const skein_surface *s) {
@@ -135,8 +135,8 @@ app_clips *app_clips_begin(const app_clips_plan *plan, skein_error *error) {
 
 /* What a mesh's file says of its faces, those of `whole`, for a format that keeps it: it is read again, since nothing else
  * of a run needs it. To be freed. */
-static void read_again(const app_clips *clips, const clip *c, const skein_mesh *whole, io_clip *described, io_mesh *read,
-                       char **path, const char *to) {
+static void read_again(const app_clips *clips, const clip *c, const skein_mesh *whole, io_clip *described,
+                       io_mesh *read, char **path, const char *to) {
     *read = (io_mesh){0};
     *path = c->format->keeps_marks ? io_scene_mesh_path(clips->plan.loaded->scene, c->body) : NULL;
     if (!*path) return;

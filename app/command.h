@@ -76,23 +76,21 @@ bool app_given(const app_arguments *arguments, const char *name);
 bool app_list_add(app_list *list, const char *value, bool repeats);
 
 /* Options that several commands have. */
-#define APP_SET_OPTION                                                                                               \
-    {                                                                                                                \
-        "--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, \
-            APP_TAKES_ANY                                                                                            \
-    },                                                                                                               \
+#define APP_SET_OPTION                                                                                            \
+    {"--set", "PATH=VALUE", "change a value of the scene: bodies.0.stretch.stiffness=2e4; may be repeated", true, \
+     APP_TAKES_ANY},                                                                                              \
         APP_ALLOW_OPTION
 /* Scenes are read with app_reach(), and so a command that reads any has this. */
-#define APP_ALLOW_OPTION                                                                                              \
-    {                                                                                                                 \
-        "--allow-path", "PATH", "a folder (not /) whose files may be read, too, if the scene names them; may be repeated", true,       \
-            APP_TAKES_FOLDER                                                                                          \
+#define APP_ALLOW_OPTION                                                                                     \
+    {                                                                                                        \
+        "--allow-path", "PATH",                                                                              \
+            "a folder (not /) whose files may be read, too, if the scene names them; may be repeated", true, \
+            APP_TAKES_FOLDER                                                                                 \
     }
-#define APP_BOUNDS_OPTIONS                                                                                        \
-    {"--max-memory", "SIZE", "memory it may take: 500M, 2G; more is a failure that is told", false, APP_TAKES_ANY}, \
-    {                                                                                                             \
-        "--max-time", "SECONDS", "then it ends as by Ctrl-C, with what it has, and exit status 1", false,         \
-            APP_TAKES_ANY                                                                                         \
+#define APP_BOUNDS_OPTIONS                                                                                            \
+    {"--max-memory", "SIZE", "memory it may take: 500M, 2G; more is a failure that is told", false, APP_TAKES_ANY}, { \
+        "--max-time", "SECONDS", "then it ends as by Ctrl-C, with what it has, and exit status 1", false,             \
+            APP_TAKES_ANY                                                                                             \
     }
 #define APP_THREADS_OPTION \
     { "--threads", "N", "threads to run on, 1 to 64; the result is the same", false, APP_TAKES_ANY }
@@ -121,9 +119,11 @@ bool app_override(app_arguments *arguments, app_override_texts texts);
 /* The same of --follow BODY, for the view's camera. */
 typedef char app_follow_text[600];
 bool app_follow(app_arguments *arguments, app_follow_text text);
-#define APP_FOLLOW_OPTION \
-    {"--follow", "BODY", "a body that the camera goes along with: its name, its number from 0, or all", false,  \
-     APP_TAKES_ANY}
+#define APP_FOLLOW_OPTION                                                                                         \
+    {                                                                                                             \
+        "--follow", "BODY", "a body that the camera goes along with: its name, its number from 0, or all", false, \
+            APP_TAKES_ANY                                                                                         \
+    }
 
 /* One more value of --set, before all that were given; it has to live as long as the arguments. False without memory.
  */

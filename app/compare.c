@@ -209,7 +209,8 @@ static int compare_all(compare_scene *scene, compare_run *runs, size_t count, co
 
 static int compare(app_arguments *arguments) {
     static compare_run runs[COMPARE_MOST_RUNS];
-    compare_scene scene = {.path = app_word(arguments), .sets = app_values(arguments, "--set"),
+    compare_scene scene = {.path = app_word(arguments),
+                           .sets = app_values(arguments, "--set"),
                            .json = app_given(arguments, "--json"),
                            .quiet = app_given(arguments, "--quiet")};
     const char *methods = app_value(arguments, "--methods"), *steps = app_value(arguments, "--steps"),

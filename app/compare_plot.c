@@ -60,19 +60,17 @@ static void plot_times(io_output *o, const compare_run *runs, size_t count, cons
 /* A panel of the table: points of a method are joined. */
 static void plot_table(io_output *o, const compare_run *runs, size_t count, const char *title, const char *x,
                        const char *y, int x_column, int y_column) {
-    io_output_printf(o,
-                     "set title '%s'; set logscale xy; set yrange [*:*]; set xlabel '%s'; set ylabel '%s'; plot \\\n",
+    io_output_printf(o, "set title '%s'; set logscale xy; set yrange [*:*]; set xlabel '%s'; set ylabel '%s'; plot \\\n",
                      title, x, y);
     size_t left = 0;
     for (size_t r = 0; r < count; r++) left += is_first_of_method(runs, r);
     for (size_t r = 0; r < count; r++)
         if (is_first_of_method(runs, r))
-            io_output_printf(
-                o,
-                "  'compare.csv' every ::1 using (strcol(1) eq '%s' && strcol(3) eq 'good' ? $%d : 1/0):%d "
-                "with linespoints pt 7 ps 0.8 lw 1.5 lc rgb '%s' title '%s'%s\n",
-                runs[r].method, x_column, y_column, colours[method_place(runs, r) % COLOUR_COUNT], runs[r].method,
-                --left ? ", \\" : "");
+            io_output_printf(o,
+                             "  'compare.csv' every ::1 using (strcol(1) eq '%s' && strcol(3) eq 'good' ? $%d : 1/0):%d "
+                             "with linespoints pt 7 ps 0.8 lw 1.5 lc rgb '%s' title '%s'%s\n",
+                             runs[r].method, x_column, y_column, colours[method_place(runs, r) % COLOUR_COUNT],
+                             runs[r].method, --left ? ", \\" : "");
 }
 
 static void write_panels(io_output *o, const char *title, const compare_run *runs, size_t count) {

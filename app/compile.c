@@ -122,8 +122,8 @@ static const skein_compiled *compile_in_folder(const app_compiler *compiler, con
         return NULL;
     }
     snprintf(made, sizeof made, "%s/formula.so", folder);
-    bool good = write_file(folder, "formula.c", NULL, f) && make_folder(folder, "skein") &&
-                make_folder(folder, "skein/inside");
+    bool good =
+        write_file(folder, "formula.c", NULL, f) && make_folder(folder, "skein") && make_folder(folder, "skein/inside");
     for (const app_header *h = app_headers; h->name && good; h++) good = write_file(folder, h->name, h->text, NULL);
     if (!good) snprintf(words, size, "no file can be written in %.300s", folder);
     if (good && app_compiler_run(compiler, folder, words, size)) {

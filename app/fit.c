@@ -58,8 +58,10 @@ static bool add_field(fitting *f, char *word) {
     }
     if (good) fprintf(stderr, "skein fit: --vary: there are more than %d fields\n", MOST_FIELDS);
     else
-        fprintf(stderr, "skein fit: --vary %s%s: expected a field, bodies.0.stretch.stiffness say, with bounds or without: "
-                        "bodies.0.stretch.stiffness=10..1e4\n", word, equals && !dots ? "=..." : "");
+        fprintf(stderr,
+                "skein fit: --vary %s%s: expected a field, bodies.0.stretch.stiffness say, with bounds or without: "
+                "bodies.0.stretch.stiffness=10..1e4\n",
+                word, equals && !dots ? "=..." : "");
     return false;
 }
 
@@ -89,8 +91,8 @@ static bool read_fields(fitting *f, const app_arguments *arguments) {
 static bool go_on(void *user, const fit_state *state) {
     const fitting *f = user;
     if (!f->calm && state->moved) {
-        fprintf(stderr, "iteration %d of %d at most, %d runs, %.1f s: misfit %.4g m;", state->iterations, f->most_iterations,
-                state->evaluations, app_seconds() - f->began, state->misfit);
+        fprintf(stderr, "iteration %d of %d at most, %d runs, %.1f s: misfit %.4g m;", state->iterations,
+                f->most_iterations, state->evaluations, app_seconds() - f->began, state->misfit);
         for (size_t i = 0; i < state->count; i++) fprintf(stderr, " %.5g", state->numbers[i].found);
         fprintf(stderr, "\n");
     }
@@ -112,7 +114,8 @@ static json_t *numbers_of(const fitting *f, const fit_outcome *o, bool found) {
         const char *path = f->fields[o->numbers[i].field].path;
         for (end = i + 1; end < o->count && o->numbers[end].component; end++) continue;
         json_t *list = json_array();
-        for (size_t k = i; k < end; k++) json_array_append_new(list, number(found ? o->numbers[k].found : o->numbers[k].began));
+        for (size_t k = i; k < end; k++)
+            json_array_append_new(list, number(found ? o->numbers[k].found : o->numbers[k].began));
         json_object_set(all, path, end - i > 1 ? list : json_array_get(list, 0));
         json_decref(list);
     }
@@ -145,21 +148,22 @@ static json_t *report(const fitting *f, const fit_outcome *o, const app_argument
                    {"misfit", number(o->misfit)},
                    {"end", json_string(ends[o->end])},
                    {"seconds", number(app_seconds() - f->began)}};
-    for (size_t i = 0; i < sizeof members / sizeof *members; i++) json_object_set_new(all, members[i].key, members[i].value);
+    for (size_t i = 0; i < sizeof members / sizeof *members; i++)
+        json_object_set_new(all, members[i].key, members[i].value);
     return all;
 }
 
 static void print(const fitting *f, const fit_outcome *o) {
-    static const char *const words[] = {"found", "not there yet: more --iterations go on", "as near as the search comes",
-                                        "interrupted"};
+    static const char *const words[] = {"found", "not there yet: more --iterations go on",
+                                        "as near as the search comes", "interrupted"};
     printf("%s: misfit %.4g m, at first %.4g m, after %d iteration%s and %d runs in %.1f s\n", words[o->end], o->misfit,
            o->began, o->iterations, o->iterations == 1 ? "" : "s", o->evaluations, app_seconds() - f->began);
     for (size_t i = 0; i < o->count; i++) {
         const fit_number *n = &o->numbers[i];
         const char *path = f->fields[n->field].path;
         bool many = n->component || (i + 1 < o->count && o->numbers[i + 1].component);
-        printf("  %s%s = %.8g, began as %.8g\n", path, !many ? "" : (const char *const[]){" x", " y", " z"}[n->component],
-               n->found, n->began);
+        printf("  %s%s = %.8g, began as %.8g\n", path,
+               !many ? "" : (const char *const[]){" x", " y", " z"}[n->component], n->found, n->began);
     }
 }
 
@@ -206,7 +210,9 @@ static int conclude(const fitting *f, const fit_outcome *o, const app_arguments 
         print(f, o);
         if (out) printf("wrote %s\n", out);
     }
-    return o->end == FIT_STOPPED ? EXIT_SIGNAL + app_interrupted() : o->end == FIT_ITERATIONS ? EXIT_FAILURE_RUN : EXIT_OK;
+    return o->end == FIT_STOPPED      ? EXIT_SIGNAL + app_interrupted()
+           : o->end == FIT_ITERATIONS ? EXIT_FAILURE_RUN
+                                      : EXIT_OK;
 }
 
 /* ---- the search ---- */
@@ -228,15 +234,19 @@ static int run_fit(fitting *f, const app_arguments *arguments) {
     skein_error error = {SKEIN_ERROR_MEMORY, "", "out of memory"};
     const fit_content *fit = io_module_load("fit", &error);
     if (!fit) {
-        fprintf(stderr, "skein fit: it takes a module that this skein was built without: 'tools/setup build' installs what it takes "
-                        "(liblbfgs), and 'make' builds it (%s: %s)\n", error.where, error.message);
+        fprintf(
+            stderr,
+            "skein fit: it takes a module that this skein was built without: 'tools/setup build' installs what it takes "
+            "(liblbfgs), and 'make' builds it (%s: %s)\n",
+            error.where, error.message);
         return EXIT_FAILURE_RUN;
     }
     char *text = text_of(&f->loaded);
     io_scene_steps_per_frame(&f->loaded.settings, &dt);
     const app_fit_target *t = &f->target;
-    fit_request request = {text, f->loaded.path, dt, t->particles, t->particle_count, t->steps, t->places, t->sample_count,
-                           f->fields, f->field_count, f->most_iterations, go_on, f};
+    fit_request request = {text,      f->loaded.path,  dt,        t->particles,   t->particle_count,  t->steps,
+                           t->places, t->sample_count, f->fields, f->field_count, f->most_iterations, go_on,
+                           f};
     fit_outcome outcome = {0};
     app_catch_interrupts();
     f->began = app_seconds();
@@ -274,7 +284,8 @@ static int fit(app_arguments *arguments) {
 }
 
 static const app_option options[] = {
-    {"--target", "CACHE.pc2", "where the body's vertices (or particles) ought to be: a point cache", false, APP_TAKES_FILE},
+    {"--target", "CACHE.pc2", "where the body's vertices (or particles) ought to be: a point cache", false,
+     APP_TAKES_FILE},
     {"--vary", "PATH[=LEAST..MOST],...", "fields to find, with bounds if they are to have some; may be repeated", true,
      APP_TAKES_ANY},
     {"--body", "NAME", "the body that the target shows, where there are several", false, APP_TAKES_ANY},

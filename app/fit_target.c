@@ -61,7 +61,8 @@ static bool match(const char *path, const skein_surface *s, uint32_t points, uin
 /* ---- which steps ---- */
 
 /* After how many steps a sample is; SIZE_MAX past the end, `whole` false where it is within a step. */
-static size_t step_of(const app_scene *loaded, const io_pc2_header *header, uint32_t sample, int last_frame, bool *whole) {
+static size_t step_of(const app_scene *loaded, const io_pc2_header *header, uint32_t sample, int last_frame,
+                      bool *whole) {
     double dt, frame = (double)header->start + sample * (double)header->rate;
     double steps = frame * io_scene_steps_per_frame(&loaded->settings, &dt);
     *whole = fabs(steps - round(steps)) < 1e-3 && steps > -0.5;
@@ -125,8 +126,9 @@ static bool read_samples(app_fit_target *t, const app_scene *loaded, const char 
         else if (step) good = add_sample(t, path, s, u, all, particle_of, header->points, step);
     }
     free(all);
-    return good && (t->sample_count || fail(path, "it has no sample after the start and up to frame %d, the scene's last",
-                                            loaded->settings.frames));
+    return good &&
+           (t->sample_count || fail(path, "it has no sample after the start and up to frame %d, the scene's last",
+                                    loaded->settings.frames));
 }
 
 bool app_fit_target_read(app_fit_target *target, const app_scene *loaded, const app_arguments *arguments) {

@@ -87,11 +87,8 @@ static void range_text(const skein_field *field, char *text, size_t size) {
 }
 
 static void default_text(const skein_field *field, char *text, size_t size) {
-    static const int counts[] = {[SKEIN_FIELD_INT2] = 2,
-                                 [SKEIN_FIELD_INT3] = 3,
-                                 [SKEIN_FIELD_REAL2] = 2,
-                                 [SKEIN_FIELD_VEC3] = 3,
-                                 [SKEIN_FIELD_TEXT] = 0};
+    static const int counts[] = {
+        [SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_INT3] = 3, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
     int count = counts[field->type];
     skein_value initial = {count ? count : 1, {field->initial[0], field->initial[1], field->initial[2]}, NULL};
     char value[128];
@@ -168,8 +165,7 @@ static void print_list(size_t list) {
     printf("%s\n\n", lists[list].word);
     if (!kind_at(lists[list].category, 0)) { // only what draws can be missing
         print_words(
-            0, 2,
-            "this skein was built without pictures: it passes a scene's view over; build it with SKEIN_RENDER=ON");
+            0, 2, "this skein was built without pictures: it passes a scene's view over; build it with SKEIN_RENDER=ON");
         printf("\n");
         return;
     }

@@ -14,11 +14,8 @@ static json_t *bound(double x, bool is_most) {
 }
 
 static json_t *initial_of(const skein_field *field) {
-    static const int counts[] = {[SKEIN_FIELD_INT2] = 2,
-                                 [SKEIN_FIELD_INT3] = 3,
-                                 [SKEIN_FIELD_REAL2] = 2,
-                                 [SKEIN_FIELD_VEC3] = 3,
-                                 [SKEIN_FIELD_TEXT] = 0};
+    static const int counts[] = {
+        [SKEIN_FIELD_INT2] = 2, [SKEIN_FIELD_INT3] = 3, [SKEIN_FIELD_REAL2] = 2, [SKEIN_FIELD_VEC3] = 3, [SKEIN_FIELD_TEXT] = 0};
     int count = counts[field->type];
     if (strchr(field->name, '*')) return json_null(); // a name that an object gives
     if (field->type == SKEIN_FIELD_TEXT) return json_string(field->text ? field->text : "");

@@ -12,9 +12,10 @@
 #include "io/own_kinds.h"
 
 static const app_command *const commands[] = {
-    &app_run_command,       &app_view_command,    &app_render_command,     &app_check_command,   &app_compare_command,
-    &app_stability_command, &app_explain_command, &app_list_command,       &app_formula_command, &app_bench_command,
-    &app_study_command,     &app_fit_command,     &app_record_command,   &app_verify_command,     &app_completion_command, &app_man_command};
+    &app_run_command,     &app_view_command,      &app_render_command,     &app_check_command,
+    &app_compare_command, &app_stability_command, &app_explain_command,    &app_list_command,
+    &app_formula_command, &app_bench_command,     &app_study_command,      &app_fit_command,
+    &app_record_command,  &app_verify_command,    &app_completion_command, &app_man_command};
 enum { COMMAND_COUNT = sizeof commands / sizeof *commands };
 
 const app_command *app_command_at(size_t index) {

@@ -68,17 +68,18 @@ static int man(app_arguments *arguments) {
            "Every command prints its options for\n.BR \\-\\-help .\n"
            ".SH COMMANDS\n");
     for (size_t c = 0; app_command_at(c); c++) print_command(app_command_at(c));
-    printf(".SH ENVIRONMENT\n"
-           ".TP\n.B SKEIN_SCENES\nthe folder of the scenes that have names, instead of those that came with skein\n"
-           ".TP\n.B SKEIN_KINDS\nshared objects with kinds of one's own, separated by colons: they are listed and scenes name "
-           "them as any other\n"
-           ".TP\n.B SKEIN_CACHE\nthe folder where compiled formulas are kept\n"
-           ".TP\n.B SKEIN_SIMD\nthe widest instruction set to use: sse, avx2 or avx512; the result is the same\n"
-           ".SH EXIT STATUS\n"
-           ".TP\n.B 0\ndone\n"
-           ".TP\n.B 1\na run failed or ended far beyond its bounds, or a file could not be written\n"
-           ".TP\n.B 2\na fault in the scene or the arguments\n"
-           ".TP\n.B 130\ninterrupted: what there is was written\n");
+    printf(
+        ".SH ENVIRONMENT\n"
+        ".TP\n.B SKEIN_SCENES\nthe folder of the scenes that have names, instead of those that came with skein\n"
+        ".TP\n.B SKEIN_KINDS\nshared objects with kinds of one's own, separated by colons: they are listed and scenes name "
+        "them as any other\n"
+        ".TP\n.B SKEIN_CACHE\nthe folder where compiled formulas are kept\n"
+        ".TP\n.B SKEIN_SIMD\nthe widest instruction set to use: sse, avx2 or avx512; the result is the same\n"
+        ".SH EXIT STATUS\n"
+        ".TP\n.B 0\ndone\n"
+        ".TP\n.B 1\na run failed or ended far beyond its bounds, or a file could not be written\n"
+        ".TP\n.B 2\na fault in the scene or the arguments\n"
+        ".TP\n.B 130\ninterrupted: what there is was written\n");
     return EXIT_OK;
 }
 

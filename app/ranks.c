@@ -107,8 +107,8 @@ static void unmake_part(void *user, skein_world *world) {
 
 static int begin(app_shared *shared, const char *word, const char *const *sets) {
     shared->word = word, shared->sets = sets;
-    shared->run = shared_begin(shared->ranks, shared->rank, shared->count,
-                               (shared_source){shared, make_part, unmake_part});
+    shared->run =
+        shared_begin(shared->ranks, shared->rank, shared->count, (shared_source){shared, make_part, unmake_part});
     if (shared->run) return EXIT_OK;
     fprintf(stderr, "skein: out of memory\n");
     return EXIT_FAILURE_RUN;

@@ -15,8 +15,8 @@ const ranks_content *app_ranks_join(const char *command, const char *instead, in
 typedef struct app_shared {
     const ranks_content *ranks;
     int rank, count;
-    char threads[32];      /* a value of --set: what each rank's share of the machine is */
-    const char *word;      /* what scene */
+    char threads[32]; /* a value of --set: what each rank's share of the machine is */
+    const char *word; /* what scene */
     const char *const *sets;
     shared_run *run;
     char parts[1100];       /* where ranks write their own; "": nowhere yet */

@@ -267,7 +267,8 @@ const app_command app_record_command = {
     NULL,
 };
 
-static const app_option verify_options[] = {APP_THREADS_OPTION, APP_ALLOW_OPTION, APP_BOUNDS_OPTIONS, APP_END_OF_OPTIONS};
+static const app_option verify_options[] = {APP_THREADS_OPTION, APP_ALLOW_OPTION, APP_BOUNDS_OPTIONS,
+                                            APP_END_OF_OPTIONS};
 
 const app_command app_verify_command = {
     "verify",

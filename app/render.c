@@ -142,8 +142,7 @@ static bool read_numbers(const app_arguments *arguments, const char *name, const
     }
     if (!good) value.count = 4; // what no field takes, so that the field says what it does take
     if (skein_field_check(field, &value, &error)) {
-        fprintf(stderr, "skein render: %s %s: %s%s\n", name, given, error.message,
-                count > 1 ? ", as in 1920x1080" : "");
+        fprintf(stderr, "skein render: %s %s: %s%s\n", name, given, error.message, count > 1 ? ", as in 1920x1080" : "");
         return false;
     }
     for (int i = 0; i < count; i++) out[i] = (int32_t)value.number[i];

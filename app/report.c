@@ -40,14 +40,15 @@ static json_t *command_line(const app_arguments *arguments) {
 }
 
 static json_t *trial(const io_trial *t) {
-    return t->substeps ? json_pack("{s:i, s:f, s:o, s:o}", "substeps", t->substeps, "ms_per_frame", t->ms, "max_stretch",
-                                   number(t->max_stretch), "p99_stretch", number(t->p99_stretch))
+    return t->substeps ? json_pack("{s:i, s:f, s:o, s:o}", "substeps", t->substeps, "ms_per_frame", t->ms,
+                                   "max_stretch", number(t->max_stretch), "p99_stretch", number(t->p99_stretch))
                        : json_null();
 }
 
 static json_t *budget(const io_budget *b) {
-    return json_pack("{s:f, s:i, s:b, s:b, s:o, s:o, s:o}", "ms_per_frame", b->ms, "frames", b->frames, "exceeded", b->exceeded, "bounded", b->bounded, "chosen",
-                     trial(&b->chosen), "half", trial(&b->half), "twice", trial(&b->twice));
+    return json_pack("{s:f, s:i, s:b, s:b, s:o, s:o, s:o}", "ms_per_frame", b->ms, "frames", b->frames, "exceeded",
+                     b->exceeded, "bounded", b->bounded, "chosen", trial(&b->chosen), "half", trial(&b->half), "twice",
+                     trial(&b->twice));
 }
 
 /* What sharing has cost. */
@@ -179,12 +180,13 @@ static void print_limit(const app_report *r) {
     const skein_statistics *s = &r->statistics;
     if (!s->limited) return;
     if (s->over_limit)
-        printf("stretch limit not kept: %zu of %zu edges are over it, by up to %.3g %% of their length (%.3g %% during the "
-               "run): more substeps help\n",
-               s->over_limit, s->limited, 100 * s->most_over_limit, 100 * r->worst_over_limit);
+        printf(
+            "stretch limit not kept: %zu of %zu edges are over it, by up to %.3g %% of their length (%.3g %% during the "
+            "run): more substeps help\n",
+            s->over_limit, s->limited, 100 * s->most_over_limit, 100 * r->worst_over_limit);
     else
-        printf("stretch limit kept by all %zu edges (over it by up to %.3g %% of their length during the run)\n", s->limited,
-               100 * r->worst_over_limit);
+        printf("stretch limit kept by all %zu edges (over it by up to %.3g %% of their length during the run)\n",
+               s->limited, 100 * r->worst_over_limit);
 }
 
 void app_report_print(const app_report *r) {
@@ -204,7 +206,8 @@ void app_report_print(const app_report *r) {
                plural((uint64_t)r->crossed_frames), r->worst_crossings, s->crossings);
     else if (r->counts_crossings) printf("no edge went through a face in any frame\n");
     if (s->contact_overflows)
-        printf("contact gave up %" PRIu64 " time%s, for more pairs were near each other than there is room for: a smaller thickness helps\n",
+        printf("contact gave up %" PRIu64
+               " time%s, for more pairs were near each other than there is room for: a smaller thickness helps\n",
                s->contact_overflows, plural(s->contact_overflows));
     if (s->all_unsolved)
         printf("%" PRIu64 " of %" PRIu64

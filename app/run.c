@@ -83,7 +83,8 @@ static bool run_frame(app_report *r, app_progress *p) {
     }
     r->frames++;
     note_device(r);
-    if (r->parts && !app_shared_record(r->shared, r->parts, r->frames, skein_world_time(r->loaded->world))) return false;
+    if (r->parts && !app_shared_record(r->shared, r->parts, r->frames, skein_world_time(r->loaded->world)))
+        return false;
     // from a card the state would have to come for it
     return r->counts_crossings ? measure(r) : !here || r->frames % 16 || measure(r);
 }
@@ -347,9 +348,11 @@ static int run(app_arguments *arguments) {
         return EXIT_FAULT;
     }
     char parent[APP_FOLDER_SIZE];
-    if (app_given(arguments, "--parts") && (!app_is_rank() || (!where && (!folder || app_outputs_file(folder, parent))))) {
-        fprintf(stderr, "skein run: --parts: the ranks of an MPI job write them (mpirun -n 8 skein run ...), into the folder "
-                        "that --out names\n");
+    if (app_given(arguments, "--parts") &&
+        (!app_is_rank() || (!where && (!folder || app_outputs_file(folder, parent))))) {
+        fprintf(stderr,
+                "skein run: --parts: the ranks of an MPI job write them (mpirun -n 8 skein run ...), into the folder "
+                "that --out names\n");
         return EXIT_FAULT;
     }
     if (app_given(arguments, "--snapshots") && !folder && !where) {
@@ -375,7 +378,8 @@ static const app_option options[] = {
     APP_DEVICE_OPTION,
     APP_COMPILE_OPTION,
     {"--log", "FILE", "write a line a step there, as CSV: energies, momenta, stretch, contacts", false, APP_TAKES_FILE},
-    {"--parts", NULL, "each rank of an MPI job writes its own particles after each frame: FOLDER/parts.xdmf, parts/", false, APP_TAKES_ANY},
+    {"--parts", NULL, "each rank of an MPI job writes its own particles after each frame: FOLDER/parts.xdmf, parts/",
+     false, APP_TAKES_ANY},
     {"--snapshots", "N", "every N frames keep what --resume can go on from, in FOLDER/resume", false, APP_TAKES_ANY},
     {"--resume", "FOLDER", "go on from the last snapshot with the run that wrote into FOLDER, as if never broken off",
      false, APP_TAKES_FOLDER},

@@ -1,6 +1,6 @@
 /* skein study: its arguments become rows to be run, and rows become tables and a plot. */
-#include "app/ranks.h"
 #include "app/study.h"
+#include "app/ranks.h"
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -43,7 +43,8 @@ bool study_take(study_work *work, json_t *result) {
     work->seconds += json_number_value(json_object_get(result, "seconds"));
     app_progress_show(&work->progress, ++work->taken);
     json_decref(result);
-    if (work->whole && app_seconds() - work->written > SECONDS_BETWEEN_TABLES && !write_tables(work)) work->failed = true;
+    if (work->whole && app_seconds() - work->written > SECONDS_BETWEEN_TABLES && !write_tables(work))
+        work->failed = true;
     return true;
 }
 
@@ -91,13 +92,15 @@ static bool sum_up(const study_work *work, bool quiet) {
         const char *said = "";
         size_t first = 0, count = count_outcome(work, outcomes[o], &said, &first);
         if (!count) continue;
-        length += snprintf(line + length, sizeof line - (size_t)length, "%s%zu %s", length ? ", " : "", count, outcomes[o]);
+        length +=
+            snprintf(line + length, sizeof line - (size_t)length, "%s%zu %s", length ? ", " : "", count, outcomes[o]);
         if (o < 3) continue;
         bad += count;
         fprintf(stderr, "skein study: %zu row%s %s, the first of them row %zu: %s\n", count, count == 1 ? "" : "s",
                 outcomes[o], first, said);
     }
-    if (!quiet) printf("%zu of %zu rows are there: %s\n", io_study_folder_done(work->folder), rows, length ? line : "none");
+    if (!quiet)
+        printf("%zu of %zu rows are there: %s\n", io_study_folder_done(work->folder), rows, length ? line : "none");
     return !bad;
 }
 
@@ -238,8 +241,9 @@ static int study(app_arguments *arguments) {
     int count, rank = many ? study_ranks_begin(&count) : -1;
     if (many && rank < 0) return EXIT_FAILURE_RUN;
     io_study *read = read_study(app_word(arguments), rank > 0);
-    int status = !read ? EXIT_FAULT : app_given(arguments, "--list") ? (rank <= 0 ? list_rows(read) : EXIT_OK)
-                                                                     : run_study(read, &w, rank);
+    int status = !read                            ? EXIT_FAULT
+                 : app_given(arguments, "--list") ? (rank <= 0 ? list_rows(read) : EXIT_OK)
+                                                  : run_study(read, &w, rank);
     io_study_free(read);
     if (many) study_ranks_end();
     return status;

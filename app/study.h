@@ -21,7 +21,7 @@ typedef struct study_work {
     int taken;               /* results that came */
     double seconds;          /* that rows took, together */
     double written;          /* when the tables were written last, of app_seconds() */
-    bool whole, failed;      /* whole: not a part, so that tables are written on the way; failed: it has been said why */
+    bool whole, failed; /* whole: not a part, so that tables are written on the way; failed: it has been said why */
     app_progress progress;
 } study_work;
 

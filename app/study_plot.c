@@ -120,8 +120,8 @@ static void plain(const char *text, char out[160]) {
 static void label_of(const plot *p, const char *column, const char *unit, char out[160]) {
     const char *given = json_string_value(json_object_get(json_object_get(io_study_plot(p->study), "labels"), column));
     char text[300];
-    snprintf(text, sizeof text, "%s%s%s%s", given ? given : column, !given && unit[0] ? " (" : "",
-             given ? "" : unit, !given && unit[0] ? ")" : "");
+    snprintf(text, sizeof text, "%s%s%s%s", given ? given : column, !given && unit[0] ? " (" : "", given ? "" : unit,
+             !given && unit[0] ? ")" : "");
     plain(text, out);
 }
 
@@ -253,15 +253,18 @@ static void put_panel(const plot *p, size_t panel) {
     // a map keeps cells that nothing is known of, and shows them white: without them gnuplot would take it for a smaller one
     const char *missing = p->is_map ? "" : "set datafile missing 'nan'; ";
     io_output_printf(p->o, "reset; set xlabel '%s' noenhanced; %sset grid lc rgb '#dddddd'\n", x, missing);
-    io_output_printf(p->o, "set palette defined (0 '#30123b', 0.25 '#3a539b', 0.5 '#21908d', 0.75 '#5dc863', 1 '#fde725')\n");
+    io_output_printf(p->o,
+                     "set palette defined (0 '#30123b', 0.25 '#3a539b', 0.5 '#21908d', 0.75 '#5dc863', 1 '#fde725')\n");
     if (p->y != NONE) {
         label_of(p, io_study_varied(p->study, (size_t)p->y), "", y);
         io_output_printf(p->o, "set ylabel '%s' noenhanced; set title '%s' noenhanced\n", y, m);
     } else io_output_printf(p->o, "set ylabel '%s' noenhanced\n", m);
     if (p->is_map) put_map(p, panel);
     else if (!is_random(p, p->x)) put_lines(p, panel);
-    else if (p->y != NONE) io_output_printf(p->o, "unset key; plot $panel%zu using 1:2:3 with points pt 7 ps 0.9 palette\n", panel);
-    else io_output_printf(p->o, "unset key; plot $panel%zu using 1:3 with points pt 7 ps 0.7 lc rgb '#0072b2'\n", panel);
+    else if (p->y != NONE)
+        io_output_printf(p->o, "unset key; plot $panel%zu using 1:2:3 with points pt 7 ps 0.9 palette\n", panel);
+    else
+        io_output_printf(p->o, "unset key; plot $panel%zu using 1:3 with points pt 7 ps 0.7 lc rgb '#0072b2'\n", panel);
 }
 
 static bool put_script(plot *p) {
@@ -292,7 +295,8 @@ static bool put_script(plot *p) {
 
 /* It runs in the folder, so that names need no quotes. */
 static bool draw(const char *folder, bool *drawn) {
-    char *arguments[] = {"sh", "-c", "cd -- \"$1\" && exec gnuplot plot.gnuplot", "sh", (char *)(uintptr_t)folder, NULL};
+    char *arguments[] = {"sh", "-c", "cd -- \"$1\" && exec gnuplot plot.gnuplot", "sh", (char *)(uintptr_t)folder,
+                         NULL};
     pid_t child;
     int status = 0, failure = posix_spawnp(&child, "sh", NULL, NULL, arguments, environ);
     if (!failure)

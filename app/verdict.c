@@ -38,8 +38,8 @@ bool app_verdict_end(app_verdict *v, const skein_statistics *end) {
             100 * end->max_stretch, 100 * v->loaded->settings.most_stretch, remedy);
     else if (ending == IO_ENDED_GROWN)
         snprintf(v->words, sizeof v->words,
-                 "ended far beyond its bounds: its energy has grown by %.3g J, and nothing does work on it; %s",
-                 growth, remedy);
+                 "ended far beyond its bounds: its energy has grown by %.3g J, and nothing does work on it; %s", growth,
+                 remedy);
     if (v->words[0]) fprintf(stderr, "skein: %s: %s\n", v->loaded->path, v->words);
     return !v->words[0];
 }

@@ -41,7 +41,9 @@ static viewer_unfocused read_unfocused(const char *given) {
 }
 
 static viewer_device read_device(const char *given) {
-    return !strcmp(given, "gpu") ? VIEWER_ON_CARD : !strcmp(given, "auto") ? VIEWER_ON_CARD_IF_ANY : VIEWER_ON_PROCESSOR;
+    return !strcmp(given, "gpu")    ? VIEWER_ON_CARD
+           : !strcmp(given, "auto") ? VIEWER_ON_CARD_IF_ANY
+                                    : VIEWER_ON_PROCESSOR;
 }
 
 static void prepare(skein_world *world) {
@@ -108,9 +110,8 @@ static int view(app_arguments *arguments) {
 
 static int view(app_arguments *arguments) {
     (void)arguments;
-    fprintf(stderr,
-            "skein view: this skein was built without a window: `tools/setup build` installs what is missing "
-            "(libglfw3-dev, libimgui-dev, g++); then build it again. `skein render` makes pictures and films\n");
+    fprintf(stderr, "skein view: this skein was built without a window: `tools/setup build` installs what is missing "
+                    "(libglfw3-dev, libimgui-dev, g++); then build it again. `skein render` makes pictures and films\n");
     return EXIT_FAILURE_RUN;
 }
 
@@ -125,7 +126,8 @@ static const app_option options[] = {
     {"--unfocused", "scene|pause|play", "when another window is typed into; scene pauses flocks", false, APP_TAKES_ANY},
     {"--compare", "PATH=VALUE", "the same scene beside it with another value, in step", false, APP_TAKES_ANY},
     {"--scenes", "FOLDER", "of the gallery, those that came with skein if not given", false, APP_TAKES_FOLDER},
-    {"--theme", "dark|light", "of the window, instead of the one that was chosen last; F7 changes it", false, APP_TAKES_ANY},
+    {"--theme", "dark|light", "of the window, instead of the one that was chosen last; F7 changes it", false,
+     APP_TAKES_ANY},
     {"--scale", "N", "of letters and controls, instead of the screen's", false, APP_TAKES_ANY},
     {"--samples", "N", "samples a pixel for smooth edges, 4 if not given", false, APP_TAKES_ANY},
     APP_FOLLOW_OPTION,

@@ -84,8 +84,9 @@ typedef struct bench_case {
     void (*run)(void);
 } bench_case;
 
-extern const bench_case bench_force, bench_sweep, bench_shapes, bench_substep, bench_threads, bench_w1, bench_default, bench_w2,
-    bench_w3, bench_scale, bench_irregular, bench_rope, bench_settled, bench_memory, bench_formula, bench_kinds, bench_dual,
-    bench_second, bench_text_to_tape, bench_flock, bench_changes, bench_widths, bench_contact, bench_broad, bench_field, bench_clips;
+extern const bench_case bench_force, bench_sweep, bench_shapes, bench_substep, bench_threads, bench_w1, bench_default,
+    bench_w2, bench_w3, bench_scale, bench_irregular, bench_rope, bench_settled, bench_memory, bench_formula,
+    bench_kinds, bench_dual, bench_second, bench_text_to_tape, bench_flock, bench_changes, bench_widths, bench_contact,
+    bench_broad, bench_field, bench_clips;
 
 #endif

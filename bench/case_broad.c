@@ -105,7 +105,8 @@ static void find_by_tree(void *data) {
     memset(job->touch->anew, 1, job->touch->skin.leaf_count);
     job->touch->refit = true;
     job->touch->tasks = NULL;
-    if (!sk_touch_partners(job->touch, &job->world->allocator, SIZE_MAX / 2, true, &too_many)) bench_stop("out of memory");
+    if (!sk_touch_partners(job->touch, &job->world->allocator, SIZE_MAX / 2, true, &too_many))
+        bench_stop("out of memory");
 }
 
 static sk_touch *touch_of(skein_world *world) {
@@ -176,19 +177,21 @@ static void frame_alone(int side) {
     skein_statistics s;
     bench_need(touching, skein_world_statistics(touching, &s));
     chained hash = new_hash(touch_of(touching), 1);
-    bench_job jobs[] = {{.run = bench_step, .data = touching}, {.run = bench_step, .data = free}, {.run = find_by_hash, .data = &hash}};
+    bench_job jobs[] = {
+        {.run = bench_step, .data = touching}, {.run = bench_step, .data = free}, {.run = find_by_hash, .data = &hash}};
     double seconds[3];
     bench_measure(jobs, 3, 0.1, seconds);
     char size[40];
     snprintf(size, sizeof size, "%d x %d", side, side);
-    bench_report(&(bench_result){.name = "a frame, nothing near",
-                                 .size = size,
-                                 .ours = 1e3 * fmax(seconds[0] - seconds[1], 1e-6),
-                                 .unit = "ms",
-                                 .other = "chained hash",
-                                 .theirs = 1e4 * seconds[2],
-                                 .faster = 7,
-                                 .note = "ours is all of contact, a falling sheet with it less one without; the hash ten times"});
+    bench_report(&(bench_result){
+        .name = "a frame, nothing near",
+        .size = size,
+        .ours = 1e3 * fmax(seconds[0] - seconds[1], 1e-6),
+        .unit = "ms",
+        .other = "chained hash",
+        .theirs = 1e4 * seconds[2],
+        .faster = 7,
+        .note = "ours is all of contact, a falling sheet with it less one without; the hash ten times"});
     free_hash(&hash);
     skein_world_destroy(touching);
     skein_world_destroy(free);
@@ -205,8 +208,9 @@ static double seconds_now(void) {
 /* 507 vertices fall on a box, which is smaller than they are, and then lie there; a step of 2 ms is one substep. */
 static void drape(void) {
     skein_world *world = sheet(13, 39, 1.2, 0.4, 1);
-    bench_need(world, skein_collider_add(world, "box",
-                                         SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.25, 0), SKEIN_VEC3("size", 0.3, 0.5, 0.3)), NULL));
+    bench_need(world, skein_collider_add(
+                          world, "box",
+                          SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.25, 0), SKEIN_VEC3("size", 0.3, 0.5, 0.3)), NULL));
     double sum = 0, worst = 0, last = 0;
     int steps = bench_quick ? 20 : 1500;
     uint64_t crossings = 0;
@@ -222,11 +226,19 @@ static void drape(void) {
         bench_need(world, skein_world_statistics(world, &s));
         crossings += s.crossings;
     }
-    const char *note = "13 x 39 particles, self-contact on; the bar is a hundredth of 27 ms, which MuJoCo 3.14 took at least";
-    bench_report(&(bench_result){.name = "drape on a box, mean", .size = "507", .ours = 1e3 * sum / steps, .unit = "ms/step", .under = 0.27, .note = note});
-    bench_report(&(bench_result){.name = "at rest", .size = "507", .ours = 5e3 * last / steps, .unit = "ms/step", .under = 0.27, .note = note});
+    const char *note =
+        "13 x 39 particles, self-contact on; the bar is a hundredth of 27 ms, which MuJoCo 3.14 took at least";
+    bench_report(&(bench_result){.name = "drape on a box, mean",
+                                 .size = "507",
+                                 .ours = 1e3 * sum / steps,
+                                 .unit = "ms/step",
+                                 .under = 0.27,
+                                 .note = note});
+    bench_report(&(bench_result){
+        .name = "at rest", .size = "507", .ours = 5e3 * last / steps, .unit = "ms/step", .under = 0.27, .note = note});
     bench_report(&(bench_result){.name = "worst", .size = "507", .ours = 1e3 * worst, .unit = "ms/step", .note = note});
-    bench_report(&(bench_result){.name = "crossings", .size = "507", .ours = (double)crossings, .unit = "in all", .under = 1, .note = note});
+    bench_report(&(bench_result){
+        .name = "crossings", .size = "507", .ours = (double)crossings, .unit = "in all", .under = 1, .note = note});
     skein_world_destroy(world);
 }
 
@@ -238,4 +250,5 @@ static void run_broad(void) {
     broad_phase(side, bench_quick ? 2 : 30);
 }
 
-const bench_case bench_broad = {"broad", "MuJoCo's drape in kind; contact's broad phase beside a chained hash", run_broad};
+const bench_case bench_broad = {"broad", "MuJoCo's drape in kind; contact's broad phase beside a chained hash",
+                                run_broad};

@@ -19,7 +19,7 @@ typedef struct film {
 
 typedef struct writing {
     const film *film;
-    const io_clip_format *format;         /* one of these two, or none: plain */
+    const io_clip_format *format; /* one of these two, or none: plain */
     const io_recording_format *recording;
     char path[80];
 } writing;
@@ -77,7 +77,7 @@ static void write_clip(void *data) {
     clip.mesh = (skein_mesh){f->positions, f->vertices, f->sizes, f->faces, f->corners, 4 * f->faces};
     const io_recorded recorded = {
         .particles = f->vertices, .cell_sizes = f->sizes, .cells = f->corners, .cell_count = f->faces, .body = "cloth"};
-    void *file = w->recording          ? w->recording->create(w->path, &recorded, &error)
+    void *file = w->recording        ? w->recording->create(w->path, &recorded, &error)
                  : w->format->create ? w->format->create(&clip, w->path, &error)
                                      : NULL;
     for (int frame = 0; frame < f->frames && !status; frame++) {
@@ -99,11 +99,13 @@ static void run_clips(void) {
     if (!mkdtemp(folder)) bench_stop("cannot make a folder in /tmp");
     snprintf(size, sizeof size, "%d frames of %d x %d", f.frames, f.side, f.side);
     for (int i = 0; i < FORMATS; i++) {
-        writing ours = {&f, io_clip_format_named(names[i]), io_recording_named(names[i]), ""}, plain = {&f, NULL, NULL, ""};
+        writing ours = {&f, io_clip_format_named(names[i]), io_recording_named(names[i]), ""},
+                plain = {&f, NULL, NULL, ""};
         if (!ours.format && !ours.recording) continue; // built without
         snprintf(ours.path, sizeof ours.path, "%s/clip.%s", folder, strcmp(names[i], "hdf5") ? names[i] : "h5");
         snprintf(plain.path, sizeof plain.path, "%s/plain", folder);
-        bench_job jobs[] = {{.run = write_clip, .data = &ours, .calls = 1}, {.run = write_clip, .data = &plain, .calls = 1}};
+        bench_job jobs[] = {{.run = write_clip, .data = &ours, .calls = 1},
+                            {.run = write_clip, .data = &plain, .calls = 1}};
         double seconds[2];
         bench_measure(jobs, 2, 0, seconds);
         char name[40];

@@ -72,7 +72,8 @@ static void heap(int side, double tilt) {
         bench_need(world[0], skein_world_statistics(world[0], &s));
         crossings += s.crossings;
     }
-    if (skein_world_hash(world[0]) != skein_world_hash(world[1])) bench_fault("heap, %s: two threads have other bits", size);
+    if (skein_world_hash(world[0]) != skein_world_hash(world[1]))
+        bench_fault("heap, %s: two threads have other bits", size);
     report("heap, crossings", size, (double)crossings, "in all", 1);
     report("heap, mean", size, 1e3 * sum[0], "ms/frame", 25);
     report("heap, worst", size, 1e3 * worst, "ms/frame", 100);

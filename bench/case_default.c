@@ -51,4 +51,5 @@ static void run_default(void) {
     bench_mesh_release(&mesh);
 }
 
-const bench_case bench_default = {"default", "the default cloth: time a frame, and stretch while it swings", run_default};
+const bench_case bench_default = {"default", "the default cloth: time a frame, and stretch while it swings",
+                                  run_default};

@@ -24,8 +24,12 @@ static skein_handle add_torus(skein_world *world, const char *kind, uint32_t aro
             for (int k = 0; k < 4; k++) corner[at][k] = quad[k];
             size[at] = 4;
         }
-    skein_mesh mesh = {.positions = &position[0][0], .vertex_count = count, .face_sizes = size, .face_count = count,
-                       .face_vertices = &corner[0][0], .face_vertex_count = 4 * (size_t)count};
+    skein_mesh mesh = {.positions = &position[0][0],
+                       .vertex_count = count,
+                       .face_sizes = size,
+                       .face_count = count,
+                       .face_vertices = &corner[0][0],
+                       .face_vertex_count = 4 * (size_t)count};
     skein_handle handle;
     bench_need(world, skein_collider_add_mesh(world, kind, &mesh, settings, &handle));
     free(position), free(size), free(corner);
@@ -42,7 +46,8 @@ typedef struct asking {
 
 static void ask(void *data) {
     asking *a = data;
-    bench_need(a->world, skein_collider_probe(a->world, a->collider, POINTS, &a->point[0][0], a->distance, &a->normal[0][0]));
+    bench_need(a->world,
+               skein_collider_probe(a->world, a->collider, POINTS, &a->point[0][0], a->distance, &a->normal[0][0]));
 }
 
 /* Points strewn in the box around it. */
@@ -77,7 +82,8 @@ static void points(uint32_t around) {
     char size[64];
     for (int k = 0; k < 2; k++) {
         of[k].world = bench_world(1);
-        of[k].collider = add_torus(of[k].world, k ? "mesh" : "field", around, k ? NULL : SKEIN_SETTINGS(SKEIN_REAL("cell", cell)));
+        of[k].collider =
+            add_torus(of[k].world, k ? "mesh" : "field", around, k ? NULL : SKEIN_SETTINGS(SKEIN_REAL("cell", cell)));
         strew(&of[k]);
         ask(&of[k]);
         jobs[k] = (bench_job){.run = ask, .data = &of[k]};
@@ -85,8 +91,13 @@ static void points(uint32_t around) {
     compare(&of[1], &of[0], cell);
     bench_measure(jobs, 2, bench_quick ? 0 : 0.1, seconds);
     snprintf(size, sizeof size, "%u triangles", 4 * around * around);
-    bench_report(&(bench_result){.name = "field, points", .size = size, .ours = 1e6 * seconds[0] / POINTS, .unit = "us/point", .other = "mesh",
-                                 .theirs = 1e6 * seconds[1] / POINTS, .faster = 10,
+    bench_report(&(bench_result){.name = "field, points",
+                                 .size = size,
+                                 .ours = 1e6 * seconds[0] / POINTS,
+                                 .unit = "us/point",
+                                 .other = "mesh",
+                                 .theirs = 1e6 * seconds[1] / POINTS,
+                                 .faster = 10,
                                  .note = "distance and normal of scattered points, cells of 1.25 cm"});
     forget(&of[0]), forget(&of[1]);
 }
@@ -112,10 +123,20 @@ static void lay(uint32_t around) {
         jobs[k] = (bench_job){.run = bench_step, .data = worlds[k], .calls = bench_quick ? 1 : 20};
     }
     bench_measure(jobs, 2, 0, seconds);
-    bench_report(&(bench_result){.name = "field, a cloth on it", .size = "64 x 64", .ours = 1e3 * seconds[0], .unit = "ms/frame", .other = "mesh",
-                                 .theirs = 1e3 * seconds[1], .faster = 2, .note = "14,400 triangles, 10 substeps"});
+    bench_report(&(bench_result){.name = "field, a cloth on it",
+                                 .size = "64 x 64",
+                                 .ours = 1e3 * seconds[0],
+                                 .unit = "ms/frame",
+                                 .other = "mesh",
+                                 .theirs = 1e3 * seconds[1],
+                                 .faster = 2,
+                                 .note = "14,400 triangles, 10 substeps"});
     bench_measure(&making, 1, 0, &once);
-    bench_report(&(bench_result){.name = "field, making", .size = "14400 triangles", .ours = once, .unit = "s", .under = 1,
+    bench_report(&(bench_result){.name = "field, making",
+                                 .size = "14400 triangles",
+                                 .ours = once,
+                                 .unit = "s",
+                                 .under = 1,
                                  .note = "86 x 28 x 86 cells"});
     skein_world_destroy(worlds[0]), skein_world_destroy(worlds[1]);
 }

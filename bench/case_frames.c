@@ -240,8 +240,7 @@ static void run_w3(void) {
     for (int i = 0; i < 2; i++) {
         contests[i].world = bench_lattice(
             n,
-            &(bench_scene){
-                .substeps = sweeps / (i + 1), .iterations = i + 1, .stiffness = BENCH_RIGID, .drag = drag});
+            &(bench_scene){.substeps = sweeps / (i + 1), .iterations = i + 1, .stiffness = BENCH_RIGID, .drag = drag});
         if (contests[i].world) hold_contest(&contests[i]);
     }
 }

@@ -133,9 +133,9 @@ static void run_rope(void) {
             bench_need(world, skein_particles_add(world, BEADS, positions, NULL, masses, NULL));
             bench_need(world, skein_constraint_add(world, "distance", pairs, BEADS - 1, NULL, NULL));
         } else {
-            bench_need(world, skein_body_add(world, "rope", NULL,
-                                             SKEIN_SETTINGS(SKEIN_REAL("count", BEADS), SKEIN_TEXT("pins", "first")),
-                                             NULL));
+            bench_need(world,
+                       skein_body_add(world, "rope", NULL,
+                                      SKEIN_SETTINGS(SKEIN_REAL("count", BEADS), SKEIN_TEXT("pins", "first")), NULL));
         }
         bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
         bench_steps(world, 20);

@@ -167,5 +167,4 @@ static void run_widths(void) {
     free(before);
 }
 
-const bench_case bench_widths = {"widths", "the same worlds by every instruction set, one beside the other",
-                                 run_widths};
+const bench_case bench_widths = {"widths", "the same worlds by every instruction set, one beside the other", run_widths};

@@ -36,9 +36,8 @@ int main(int argc, char **argv) {
     }
     char symbol[64];
     snprintf(symbol, sizeof symbol, "compiled_%s", name);
-    if (!f ||
-        (compiled ? skein_formula_emit_compiled(f, symbol, print, file, &error)
-                  : skein_formula_emit(f, second ? SKEIN_FORMULA_C : SKEIN_FORMULA_KERNEL, print, file, &error))) {
+    if (!f || (compiled ? skein_formula_emit_compiled(f, symbol, print, file, &error)
+                        : skein_formula_emit(f, second ? SKEIN_FORMULA_C : SKEIN_FORMULA_KERNEL, print, file, &error))) {
         fprintf(stderr, "bench_emit: %s: %s\n", error.where, error.message);
         return 1;
     }

@@ -10,7 +10,12 @@
 #include <stdlib.h>
 #include <time.h>
 
-#define NUMBER(name_, value_) {name_, {1, {value_, 0, 0}, NULL}}
+#define NUMBER(name_, value_)       \
+    {                               \
+        name_, {                    \
+            1, {value_, 0, 0}, NULL \
+        }                           \
+    }
 static const skein_setting end = {NULL, {0, {0, 0, 0}, NULL}};
 
 static double seconds(void) {
@@ -35,12 +40,13 @@ static skein_world *make(const char *method, int substeps) {
     desc.thread_count = 1;
     skein_world *world = skein_world_create(&desc, NULL);
     const skein_setting of_method[] = {NUMBER("substeps", substeps), end}, drag[] = {NUMBER("rate", 2), end};
-    const skein_setting cloth[] = {{"grid", {2, {20, 20, 0}, NULL}},   {"pins", {0, {0, 0, 0}, "top edge"}},
+    const skein_setting cloth[] = {{"grid", {2, {20, 20, 0}, NULL}},    {"pins", {0, {0, 0, 0}, "top edge"}},
                                    {"rotation", {3, {60, 0, 0}, NULL}}, NUMBER("stretch.tether", (double)INFINITY),
                                    NUMBER("stretch.stiffness", 100),    NUMBER("shear.stiffness", 20),
                                    NUMBER("bend.rigidity", 1e-4),       end};
-    bool good = world && !skein_method_set(world, method, of_method) && !skein_body_add(world, "cloth", NULL, cloth, NULL) &&
-                !skein_force_add(world, "gravity", NULL, NULL) && !skein_force_add(world, "drag", drag, NULL);
+    bool good = world && !skein_method_set(world, method, of_method) &&
+                !skein_body_add(world, "cloth", NULL, cloth, NULL) && !skein_force_add(world, "gravity", NULL, NULL) &&
+                !skein_force_add(world, "drag", drag, NULL);
     if (good) return world;
     fprintf(stderr, "skein_bench_gradient: %s\n", world ? skein_world_error(world)->message : "out of memory");
     exit(1);
@@ -48,8 +54,10 @@ static skein_world *make(const char *method, int substeps) {
 
 static void compare(const char *method, int substeps, size_t frames, int times) {
     skein_world *world = make(method, substeps);
-    double *by = malloc(6 * skein_particle_count(world) * sizeof *by), by_field[3], least[3] = {INFINITY, INFINITY, INFINITY};
-    const char *const fields[] = {"bodies.0.stretch.stiffness", "bodies.0.shear.stiffness", "bodies.0.bend.rigidity", NULL};
+    double *by = malloc(6 * skein_particle_count(world) * sizeof *by), by_field[3],
+           least[3] = {INFINITY, INFINITY, INFINITY};
+    const char *const fields[] = {"bodies.0.stretch.stiffness", "bodies.0.shear.stiffness", "bodies.0.bend.rigidity",
+                                  NULL};
     for (int t = 0; t < 3 * times && by; t++) {
         skein_gradient_desc desc = {1 / 60.0, frames, measure, &frames, fields, t % 3 == 2}; // 1 byte: checkpoints
         skein_gradient_result result = {0, by, by + 3 * skein_particle_count(world), by_field};
@@ -62,8 +70,8 @@ static void compare(const char *method, int substeps, size_t frames, int times) 
         }
         least[t % 3] = fmin(least[t % 3], seconds() - began);
     }
-    printf("%-17s %2d substeps, %zu frames: a run %.3g s; its gradient %.2f runs, with checkpoints %.2f\n", method, substeps,
-           frames, least[0], least[1] / least[0], least[2] / least[0]);
+    printf("%-17s %2d substeps, %zu frames: a run %.3g s; its gradient %.2f runs, with checkpoints %.2f\n", method,
+           substeps, frames, least[0], least[1] / least[0], least[2] / least[0]);
     free(by);
     skein_world_destroy(world);
 }

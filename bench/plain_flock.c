@@ -58,9 +58,8 @@ void plain_flock_destroy(plain_flock *f) {
 
 /* cos(2 pi (t + 0.5)) by t^2. */
 static inline float cosine(float s) {
-    return -1.f +
-           s * (19.7392088f +
-                s * (-64.939394f + s * (85.4568172f + s * (-60.2446414f + s * (26.4262568f + s * -7.9035364f)))));
+    return -1.f + s * (19.7392088f +
+                       s * (-64.939394f + s * (85.4568172f + s * (-60.2446414f + s * (26.4262568f + s * -7.9035364f)))));
 }
 
 /* Adds to `sum` what bird i gets from the candidates [begin, end). */

@@ -31,7 +31,8 @@ static void fill_arrays(void) {
 static skein_status build(skein_world *world, skein_handle *cloth) {
     skein_mesh mesh = {positions[0], VERTICES, face_sizes, FACES, face_vertices[0], (size_t)3 * FACES};
     /* vertices 0 and 30 are the upper corners; "top corners" would find them, too */
-    const skein_setting sheet[] = {SKEIN_TEXT(SKEIN_CLOTH_PINS, "0 30"), SKEIN_REAL(SKEIN_CLOTH_DENSITY, 0.15), SKEIN_END};
+    const skein_setting sheet[] = {SKEIN_TEXT(SKEIN_CLOTH_PINS, "0 30"), SKEIN_REAL(SKEIN_CLOTH_DENSITY, 0.15),
+                                   SKEIN_END};
     const skein_setting wind[] = {SKEIN_VEC3(SKEIN_SURFACE_WIND_VELOCITY, 0.5, 0, 2.5), SKEIN_END};
     /* the ball starts behind the curtain and goes through its plane in half a second */
     const skein_setting ball[] = {SKEIN_VEC3(SKEIN_SPHERE_CENTRE, 0, 0.9, -0.8), SKEIN_REAL(SKEIN_SPHERE_RADIUS, 0.2),
@@ -46,12 +47,11 @@ static skein_status build(skein_world *world, skein_handle *cloth) {
 
 /* Vertices and their normals come interleaved, as a graphics card takes them. */
 static bool write_obj(skein_world *world, skein_handle cloth, FILE *to) {
-    static struct vertex {
-        float position[3], normal[3];
-    } v[VERTICES];
+    static struct vertex { float position[3], normal[3]; } v[VERTICES];
     skein_surface s;
     if (skein_body_surface(world, cloth, &s) ||
-        skein_body_vertices_copy(world, cloth, 1, skein_floats(v[0].position, sizeof *v), skein_floats(v[0].normal, sizeof *v)))
+        skein_body_vertices_copy(world, cloth, 1, skein_floats(v[0].position, sizeof *v),
+                                 skein_floats(v[0].normal, sizeof *v)))
         return false;
     for (size_t i = 0; i < s.vertex_count; i++)
         fprintf(to, "v %.6f %.6f %.6f\nvn %.6f %.6f %.6f\n", (double)v[i].position[0], (double)v[i].position[1],

@@ -37,11 +37,10 @@ static skein_world *make_net(void) {
     need(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
     need(world, skein_force_add(world, "gravity", NULL, NULL));
     need(world, skein_particles_add(world, SIDE * SIDE, positions[0], NULL, masses, NULL));
-    need(world,
-         skein_constraint_add(world, "formula", pairs[0], count,
-                              SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - L * (1 + 0.2 * sin(t))"),
-                                             SKEIN_REAL("parameters.L", 0.01), SKEIN_REAL("stiffness", 1000)),
-                              NULL));
+    need(world, skein_constraint_add(world, "formula", pairs[0], count,
+                                     SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - L * (1 + 0.2 * sin(t))"),
+                                                    SKEIN_REAL("parameters.L", 0.01), SKEIN_REAL("stiffness", 1000)),
+                                     NULL));
     return world;
 }
 

@@ -24,11 +24,12 @@ int main(void) {
     skein_world *world = skein_world_create(&desc, &error);
     const double positions[] = {0, 0, 0, 0.1, 0, 0}, velocities[] = {0, 0, 0, 1, 2, 0}, masses[] = {0, 0.2};
     const uint32_t ends[] = {0, 1};
-    bool good = world && !skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 40))) &&
-                !skein_particles_add(world, 2, positions, velocities, masses, NULL) &&
-                !skein_force_add(world, "gravity", NULL, NULL) &&
-                !skein_constraint_add(world, "leash", ends, 1,
-                                      SKEIN_SETTINGS(SKEIN_REAL("reach", 0.8), SKEIN_REAL("stiffness", INFINITY)), NULL);
+    bool good =
+        world && !skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 40))) &&
+        !skein_particles_add(world, 2, positions, velocities, masses, NULL) &&
+        !skein_force_add(world, "gravity", NULL, NULL) &&
+        !skein_constraint_add(world, "leash", ends, 1,
+                              SKEIN_SETTINGS(SKEIN_REAL("reach", 0.8), SKEIN_REAL("stiffness", INFINITY)), NULL);
     double x[3] = {0, 0, 0}, flight = 0, farthest = 0;
     for (int i = 1; good && i <= 240; i++) {
         good = !skein_world_step(world, 1.0 / 60) && !skein_positions_copy(world, 1, 1, x);

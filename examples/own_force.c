@@ -68,7 +68,8 @@ int main(void) {
     skein_error error = {SKEIN_OK, "", ""};
     skein_kinds *kinds = skein_kinds_create(&error);
     bool good = kinds != NULL;
-    for (int i = 0; good && skein_module_kinds[i]; i++) good = !skein_kind_register(kinds, skein_module_kinds[i], &error);
+    for (int i = 0; good && skein_module_kinds[i]; i++)
+        good = !skein_kind_register(kinds, skein_module_kinds[i], &error);
     if (!good) return fprintf(stderr, "own_force: %s %s\n", error.where, error.message), 1;
     double by_formula = height_under(kinds, "whirl"), by_function = height_under(kinds, "gust");
     printf("lifted by %.3f m and %.3f m\n", by_formula, by_function);

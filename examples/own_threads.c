@@ -56,8 +56,8 @@ static void run_tasks(void *user, void (*task)(void *data, int index), void *dat
 static uint64_t fall(const skein_world_desc *desc) {
     const skein_setting cloth[] = {SKEIN_PAIR("grid", 97, 97), SKEIN_TEXT("pins", "corners"), SKEIN_END};
     skein_world *world = skein_world_create(desc, NULL);
-    bool good = world && !skein_body_add(world, "cloth", NULL, cloth, NULL) &&
-                !skein_force_add(world, "gravity", NULL, NULL);
+    bool good =
+        world && !skein_body_add(world, "cloth", NULL, cloth, NULL) && !skein_force_add(world, "gravity", NULL, NULL);
     for (int i = 0; i < 60 && good; i++) good = !skein_world_step(world, SKEIN_DEFAULT_STEP);
     uint64_t hash = good ? skein_world_hash(world) : 0;
     skein_world_destroy(world);
@@ -84,6 +84,7 @@ int main(void) {
     desc = skein_default_world_desc();
     desc.thread_count = 1;
     uint64_t alone = fall(&desc);
-    printf("on %d threads of our own and on one: %s\n", WORKERS + 1, ours && ours == alone ? "the same bits" : "other bits");
+    printf("on %d threads of our own and on one: %s\n", WORKERS + 1,
+           ours && ours == alone ? "the same bits" : "other bits");
     return !(ours && ours == alone);
 }

@@ -42,8 +42,9 @@ int main(int argc, char **argv) {
         good = false;
     }
     good = good && run(other, 60);
-    if (good) printf("%zu bytes; gone on from, the state's hash is %s\n", written,
-                     skein_world_hash(other) == first ? "the same" : "another");
+    if (good)
+        printf("%zu bytes; gone on from, the state's hash is %s\n", written,
+               skein_world_hash(other) == first ? "the same" : "another");
     good = good && skein_world_hash(other) == first;
     free(bytes);
     free(read);

@@ -26,12 +26,12 @@ typedef struct fit {
     const fit_request *request;
     fit_outcome *outcome;
     skein_world *world;
-    const char **paths; /* of the fields, ended by NULL */
+    const char **paths;                     /* of the fields, ended by NULL */
     double *best, *last, *numbers, *slopes; /* of each number: z; and its value and the derivative by it */
-    double *scale;      /* what z is multiplied by; 0: it is the logarithm */
-    double mean;        /* one over how many distances there are */
-    double unit;        /* m^2, the first run's mean: what L-BFGS sees begins at 1 */
-    size_t sample;      /* while a run is measured: samples from here on are done */
+    double *scale;                          /* what z is multiplied by; 0: it is the logarithm */
+    double mean;                            /* one over how many distances there are */
+    double unit;                            /* m^2, the first run's mean: what L-BFGS sees begins at 1 */
+    size_t sample;                          /* while a run is measured: samples from here on are done */
     skein_error *error;
     bool stopped, failed, first;
 } fit;
@@ -95,11 +95,8 @@ static double measure(void *user, const skein_gradient_state *state) {
 /* The mean squared distance with these numbers; INFINITY where they cannot be run. */
 static double run_with(fit *f, const double *numbers) {
     const fit_request *r = f->request;
-    skein_gradient_desc desc = {.dt = r->dt,
-                                .steps = r->steps[r->sample_count - 1],
-                                .measure = measure,
-                                .user = f,
-                                .fields = f->paths};
+    skein_gradient_desc desc = {
+        .dt = r->dt, .steps = r->steps[r->sample_count - 1], .measure = measure, .user = f, .fields = f->paths};
     skein_gradient_result result = {.by_field = f->slopes};
     f->sample = r->sample_count;
     f->outcome->evaluations++;
@@ -197,13 +194,15 @@ static bool add_field(fit *f, size_t which, skein_error *error) {
         *error = *skein_world_error(f->world);
         return false;
     }
-    if (!value.count) return !io_error_set(error, SKEIN_ERROR_VALUE, field->path, "it is no number that could be varied");
+    if (!value.count)
+        return !io_error_set(error, SKEIN_ERROR_VALUE, field->path, "it is no number that could be varied");
     bool positive = is_positive(f->world, field->path, value) || field->least > 0;
     double size = 0;
     for (int k = 0; k < value.count; k++) size = fmax(size, fabs(value.number[k]));
     for (int k = 0; k < value.count; k++) {
         double x = value.number[k];
-        if (!isfinite(x)) return !io_error_set(error, SKEIN_ERROR_VALUE, field->path, "it is infinite: begin with a number");
+        if (!isfinite(x))
+            return !io_error_set(error, SKEIN_ERROR_VALUE, field->path, "it is infinite: begin with a number");
         if (!(x > field->least && x < field->most))
             return !io_error_set(error, SKEIN_ERROR_VALUE, field->path,
                                  "it begins at %g: expected a number between its bounds, %g and %g", x, field->least,
@@ -259,7 +258,8 @@ static bool search(fit *f) {
     int status = lbfgs(count, z, &value, evaluate, went_on, f, &how);
     f->outcome->end = end_of(f, status);
     lbfgs_free(z);
-    if (status == LBFGSERR_OUTOFMEMORY) io_error_set(f->error, SKEIN_ERROR_MEMORY, "", "out of memory"), f->failed = true;
+    if (status == LBFGSERR_OUTOFMEMORY)
+        io_error_set(f->error, SKEIN_ERROR_MEMORY, "", "out of memory"), f->failed = true;
     return !f->failed;
 }
 

@@ -88,17 +88,17 @@ double io_substeps_by_rounding(const skein_world *world, double dt) {
     double g = gravity_of(world), extent = extent_of(world);
     const char *method = method_of(world);
     bool moves_positions = !strcmp(method, "xpbd") || !strcmp(method, "pbd");
-    return moves_positions && g > 0 && extent > 0 ? dt / sqrt(epsilon / 2 * extent / (tolerable * g)) : (double)INFINITY;
+    return moves_positions && g > 0 && extent > 0 ? dt / sqrt(epsilon / 2 * extent / (tolerable * g))
+                                                  : (double)INFINITY;
 }
 
 static size_t advise_of_rounding(const skein_world *world, double dt, io_warnings warnings) {
     double most = io_substeps_by_rounding(world, dt);
     if (substeps_of(world) <= most) return 0;
-    io_warn(
-        warnings,
-        "in a substep of %.3g ms gravity moves things by hardly more than positions are rounded to at %.3g m: small "
-        "forces get lost; set method.substeps to %.0f or less, or build with SKEIN_DOUBLE",
-        1e3 * dt / substeps_of(world), extent_of(world), fmax(1, floor(most)));
+    io_warn(warnings,
+            "in a substep of %.3g ms gravity moves things by hardly more than positions are rounded to at %.3g m: small "
+            "forces get lost; set method.substeps to %.0f or less, or build with SKEIN_DOUBLE",
+            1e3 * dt / substeps_of(world), extent_of(world), fmax(1, floor(most)));
     return 1;
 }
 

@@ -77,10 +77,12 @@ static int most_substeps(skein_world *world, double dt) {
     return (int)fmax(1, fmin(MOST_SUBSTEPS, io_substeps_by_rounding(world, dt)));
 }
 
-skein_status io_budget_choose(skein_world *world, const io_scene_settings *settings, io_budget *budget, skein_error *error) {
+skein_status io_budget_choose(skein_world *world, const io_scene_settings *settings, io_budget *budget,
+                              skein_error *error) {
     double dt;
     int per_frame = io_scene_steps_per_frame(settings, &dt), most = most_substeps(world, dt);
-    *budget = (io_budget){.ms = settings->budget_ms, .frames = settings->frames < MOST_FRAMES ? settings->frames : MOST_FRAMES};
+    *budget = (io_budget){.ms = settings->budget_ms,
+                          .frames = settings->frames < MOST_FRAMES ? settings->frames : MOST_FRAMES};
     if (budget->frames < 1) budget->frames = 1;
     size_t size = skein_snapshot_size(world);
     void *start = malloc(size + 1);
@@ -108,11 +110,12 @@ skein_status io_budget_choose(skein_world *world, const io_scene_settings *setti
 
 static size_t put_trial(const io_trial *trial, const char *before, char *text, size_t size) {
     if (!trial->substeps) return 0;
-    int length = snprintf(text, size, "%s%d substep%s, %.3g ms", before, trial->substeps, trial->substeps == 1 ? "" : "s", trial->ms);
+    int length = snprintf(text, size, "%s%d substep%s, %.3g ms", before, trial->substeps,
+                          trial->substeps == 1 ? "" : "s", trial->ms);
     size_t at = length < 0 || (size_t)length >= size ? size - 1 : (size_t)length;
     if (trial->max_stretch > 0)
-        length = snprintf(text + at, size - at, ", stretch at most %.3g %% (99 %% of edges under %.3g %%)", 100 * trial->max_stretch,
-                          100 * trial->p99_stretch);
+        length = snprintf(text + at, size - at, ", stretch at most %.3g %% (99 %% of edges under %.3g %%)",
+                          100 * trial->max_stretch, 100 * trial->p99_stretch);
     else length = 0;
     return length < 0 || (size_t)length >= size - at ? size - 1 : at + (size_t)length;
 }

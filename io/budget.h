@@ -15,10 +15,10 @@ typedef struct io_trial {
 } io_trial;
 
 typedef struct io_budget {
-    double ms;    /* what was asked for, a frame; 0: no budget, and nothing else holds */
-    int frames;   /* that were tried, from the start */
-    bool exceeded; /* even one substep takes longer */
-    bool bounded;  /* there was time for more, which rounding would undo, or which nobody needs */
+    double ms;                    /* what was asked for, a frame; 0: no budget, and nothing else holds */
+    int frames;                   /* that were tried, from the start */
+    bool exceeded;                /* even one substep takes longer */
+    bool bounded;                 /* there was time for more, which rounding would undo, or which nobody needs */
     io_trial chosen, half, twice; /* by half as many substeps, and by twice as many; 0 substeps: not tried */
 } io_budget;
 
@@ -29,7 +29,8 @@ int io_budget_substeps(double ms, int most, double (*cost)(void *user, int subst
 
 /* Chooses for a world that has just been built: steps it from its start, sets method.substeps, and takes it back, to the
  * bit. Fails with SKEIN_ERROR_MEMORY, or as the world does. */
-skein_status io_budget_choose(skein_world *world, const io_scene_settings *settings, io_budget *budget, skein_error *error);
+skein_status io_budget_choose(skein_world *world, const io_scene_settings *settings, io_budget *budget,
+                              skein_error *error);
 
 /* The same in words, on one line: what was chosen, and what half and twice as many come to. */
 void io_budget_text(const io_budget *budget, char *text, size_t size);

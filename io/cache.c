@@ -8,8 +8,8 @@
 
 #include "io/groups.h"
 #include "io/own_kinds.h"
-#include "io/reach.h"
 #include "io/pc2.h"
+#include "io/reach.h"
 
 /* A motion's numbers take the place of its kind's default. */
 static double number_of(const io_settings *settings, const char *name) {
@@ -29,7 +29,9 @@ static bool find_body(skein_world *world, io_place place, const char *name, skei
         bool named = name[0] ? !skein_get(world, body, "name", &value) && !strcmp(value.text, name) : count == 1;
         if (named) return !skein_body_surface(world, body, surface);
     }
-    if (name[0]) io_fault(place, "on", SKEIN_ERROR_NAME, "there is no body of the name '%s'%s", name, io_group_words(world, name));
+    if (name[0])
+        io_fault(place, "on", SKEIN_ERROR_NAME, "there is no body of the name '%s'%s", name,
+                 io_group_words(world, name));
     else io_fault(place, "on", SKEIN_ERROR_VALUE, "expected the name of the body that the points are of");
     return false;
 }
@@ -59,7 +61,8 @@ static size_t match(const skein_world *world, io_place place, const skein_surfac
         point_of[pins++] = i;
     }
     if (!pins) {
-        io_fault(place, "file", SKEIN_ERROR_VALUE, "the body has no pins that a cache could lead: give it \"pins\", or the cache a "
+        io_fault(place, "file", SKEIN_ERROR_VALUE,
+                 "the body has no pins that a cache could lead: give it \"pins\", or the cache a "
                  "\"max_distance\", \"backstop\" or \"pull\" to hold what is free");
         return 0;
     }
@@ -86,10 +89,9 @@ static size_t match(const skein_world *world, io_place place, const skein_surfac
     } else if (points == pins) {
         for (size_t k = 0; k < pins; k++) point_of[k] = (uint32_t)k;
     } else if (points != surface->particle_count) {
-        io_fault(
-            place, "file", SKEIN_ERROR_VALUE,
-            "the file has %u points: expected as many as the body has vertices (%zu), particles (%u) or pins (%zu)",
-            points, surface->vertex_count, surface->particle_count, pins);
+        io_fault(place, "file", SKEIN_ERROR_VALUE,
+                 "the file has %u points: expected as many as the body has vertices (%zu), particles (%u) or pins (%zu)",
+                 points, surface->vertex_count, surface->particle_count, pins);
         return 0;
     }
     return pins;

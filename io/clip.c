@@ -9,7 +9,8 @@
 #include <unistd.h>
 
 /* A new format is its own file and a row here. */
-static const io_clip_format *const formats[] = {&io_clip_obj, &io_clip_pc2, &io_clip_mdd, &io_clip_glb, &io_clip_usda, &io_clip_ply, &io_clip_stl};
+static const io_clip_format *const formats[] = {&io_clip_obj,  &io_clip_pc2, &io_clip_mdd, &io_clip_glb,
+                                                &io_clip_usda, &io_clip_ply, &io_clip_stl};
 
 const io_clip_format *io_clip_format_at(size_t index) {
     return index < sizeof formats / sizeof *formats ? formats[index] : NULL;

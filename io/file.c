@@ -91,7 +91,8 @@ skein_status io_file_read(const char *path, size_t most, io_bytes *out, skein_er
 /* Whether `real`, without links, lies in the folder of `path`. */
 static bool lies_in_folder_of(const char *real, const char *path) {
     const char *slash = strrchr(path, '/');
-    char *name = slash ? strndup(path, (size_t)(slash + 1 - path)) : strdup("."), *whole = name ? realpath(name, NULL) : NULL;
+    char *name = slash ? strndup(path, (size_t)(slash + 1 - path)) : strdup("."),
+         *whole = name ? realpath(name, NULL) : NULL;
     size_t length = whole ? strlen(whole) : 0;
     bool inside = whole && !strncmp(real, whole, length) && (length == 1 || real[length] == '/');
     free(name), free(whole);
@@ -125,7 +126,7 @@ struct io_output {
     char *part_path;  /* where it stands until then; NULL where a device or pipe is written directly */
     uint64_t written; /* bytes that went through, without those in the buffer */
     double looked;    /* seconds: when io_output_is_due() last said yes */
-    locale_t locale; /* the plain one, in which numbers are written whatever the program's is; or 0 */
+    locale_t locale;  /* the plain one, in which numbers are written whatever the program's is; or 0 */
     size_t used;
     char buffer[1 << 16];
 };

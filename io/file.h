@@ -68,8 +68,9 @@ typedef struct io_output io_output;
 
 io_output *io_output_open(const char *path, skein_error *error); /* NULL on failure */
 void io_output_write(io_output *output, const void *bytes, size_t size);
-void io_output_printf(io_output *output, const char *format, ...) IO_PRINTF(2, 3); /* numbers have a point, in any locale */
-void io_output_count(io_output *output, uint64_t value);                           /* in decimal */
+void io_output_printf(io_output *output, const char *format, ...)
+    IO_PRINTF(2, 3);                                     /* numbers have a point, in any locale */
+void io_output_count(io_output *output, uint64_t value); /* in decimal */
 /* Overwrites bytes already written; fails on a pipe. */
 void io_output_patch(io_output *output, uint64_t offset, const void *bytes, size_t size);
 /* The path of the file while it grows; NULL where a device or pipe is written directly. */

@@ -120,7 +120,8 @@ skein_status io_mesh_read(const char *path, io_mesh *out, io_warnings warnings, 
         io_bytes_free(&text);
         return status;
     }
-    return io_error_set(error, SKEIN_ERROR_FILE, path, "not a mesh file by its ending: expected .obj, .off, .ply, .stl, .glb, .gltf or .node");
+    return io_error_set(error, SKEIN_ERROR_FILE, path,
+                        "not a mesh file by its ending: expected .obj, .off, .ply, .stl, .glb, .gltf or .node");
 }
 
 /* ---- Lines and words ----------------------------------------------------------------------- */

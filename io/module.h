@@ -20,8 +20,7 @@ typedef struct io_module {
 #define IO_MODULE_OF_EITHER(content_) IO_MODULE_OF(content_, 0)
 #define IO_MODULE_OF(content_, real_size_) \
     extern const io_module skein_module;   \
-    __attribute__((visibility("default"))) \
-    const io_module skein_module = {SKEIN_VERSION, (real_size_), (content_)}
+    __attribute__((visibility("default"))) const io_module skein_module = {SKEIN_VERSION, (real_size_), (content_)}
 
 /* The content of a module, from any thread; NULL after an error that says what to do. Cheap once it is loaded. */
 const void *io_module_load(const char *name, skein_error *error);

@@ -236,8 +236,7 @@ static void name_object(const obj_reader *reader) {
     char quote[IO_QUOTE_SIZE];
     name += *name == ' ';
     snprintf(error->message + length, sizeof error->message - length,
-             "; it belongs to the object %s: mend or delete the face there",
-             io_quote(name, name + strlen(name), quote));
+             "; it belongs to the object %s: mend or delete the face there", io_quote(name, name + strlen(name), quote));
 }
 
 /* A word that is neither vertex nor face. */

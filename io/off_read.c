@@ -136,8 +136,7 @@ static skein_status read_face(off_reader *reader, io_word word) {
 
 static skein_status fail_cut(const off_reader *reader, const char *what, size_t have, size_t promised) {
     return io_error_at(reader->scan.error, SKEIN_ERROR_SYNTAX, reader->scan.path, reader->scan.line,
-                       "the file ends after %zu of %zu %s: it is cut off, or its header is wrong", have, promised,
-                       what);
+                       "the file ends after %zu of %zu %s: it is cut off, or its header is wrong", have, promised, what);
 }
 
 static skein_status read_body(off_reader *reader) {

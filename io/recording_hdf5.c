@@ -104,11 +104,8 @@ static io_hdf5 *begin(const char *path, const io_recorded *r, h5_file *f, skein_
                                       .data = r->scene,
                                       .notes = {{"about", "the scene as it was run, JSON"}}};
     sets[count++] = (io_hdf5_set){.name = "time", .type = IO_HDF5_DOUBLE, .rank = 1, .notes = {{"unit", "s"}}};
-    sets[count++] = (io_hdf5_set){.name = "velocities",
-                                  .type = IO_HDF5_REAL,
-                                  .rank = 3,
-                                  .dims = {0, r->particles, 3},
-                                  .notes = {{"unit", "m/s"}}};
+    sets[count++] = (io_hdf5_set){
+        .name = "velocities", .type = IO_HDF5_REAL, .rank = 3, .dims = {0, r->particles, 3}, .notes = {{"unit", "m/s"}}};
     io_hdf5_note notes[IO_HDF5_MOST_NOTES] = {{"skein", SKEIN_VERSION}, {"axes", "metres, y up"}};
     if (r->body && r->body[0]) notes[2] = (io_hdf5_note){"body", r->body};
     io_hdf5 *hdf5 = io_hdf5_begin(path, sets, count, notes, error);

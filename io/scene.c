@@ -42,8 +42,9 @@ static const skein_field scene_fields[] = {
           "the longest step; a frame is cut into as many equal steps as it takes"),
     FIELD(most_stretch, "most_stretch", SKEIN_FIELD_REAL, "", 1, 0, (double)INFINITY, NULL,
           "a run that ends with an edge longer than its rest length times 1 + this fails; \"infinite\" is none"),
-    FIELD(budget_ms, "method.budget_ms", SKEIN_FIELD_REAL, "ms", 0, 0, 1e9, NULL,
-          "picks the method's substeps: as many as a frame takes no longer with, here and now; 0: they are as they stand"),
+    FIELD(
+        budget_ms, "method.budget_ms", SKEIN_FIELD_REAL, "ms", 0, 0, 1e9, NULL,
+        "picks the method's substeps: as many as a frame takes no longer with, here and now; 0: they are as they stand"),
     FIELD(
         threads, "threads", SKEIN_FIELD_INT, "", 0, 0, 64, NULL,
         "the most threads to run on, 0: one a processor; steps take as many as are faster, and the result is the same"),
@@ -296,8 +297,8 @@ static void read_top(io_scene *scene, io_place place) {
     for (size_t i = 0; i < SECTION_COUNT; i++) others[i] = sections[i].name;
     io_settings settings;
     io_settings_read(&settings, place, scene->root, io_scene_kind(), others);
-    io_settings_read_one(&settings, place, "method.budget_ms", json_object_get(json_object_get(scene->root, "method"), "budget_ms"),
-                         io_scene_kind());
+    io_settings_read_one(&settings, place, "method.budget_ms",
+                         json_object_get(json_object_get(scene->root, "method"), "budget_ms"), io_scene_kind());
     if (!fill_params(io_scene_kind(), &scene->settings, &settings))
         io_fault(place, "", SKEIN_ERROR_MEMORY, "out of memory");
     io_settings_free(&settings);

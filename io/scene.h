@@ -44,7 +44,7 @@ typedef struct io_reach io_reach;
 typedef struct io_faults {
     void (*report)(void *user, const skein_error *error);
     void *user;
-    size_t count; /* so far */
+    size_t count;          /* so far */
     const io_reach *reach; /* which files may be read (io/reach.h); NULL: all */
 } io_faults;
 

@@ -7,9 +7,9 @@
 
 #include "io/cache.h"
 #include "io/groups.h"
+#include "io/mesh.h"
 #include "io/own_kinds.h"
 #include "io/reach.h"
-#include "io/mesh.h"
 #include "io/scene_names.h"
 #include "io/scene_settings.h"
 #include "solvers/cholmod.h"
@@ -94,8 +94,8 @@ static bool add_body(const builder *b, io_place place, const skein_kind *kind, c
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
     // as polygons they would be faces without any sense
     if (mesh.tetrahedra && strcmp(kind->name, "tetrahedra") != 0) {
-        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off",
-                 file, kind->name);
+        io_fault(place, "mesh", SKEIN_ERROR_MESH,
+                 "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off", file, kind->name);
         io_mesh_free(&mesh);
         return false;
     }
@@ -115,8 +115,8 @@ static bool add_collider(const builder *b, io_place place, const skein_kind *kin
     io_mesh mesh = {0};
     if (has_mesh && !read_mesh(b, place, file, &mesh)) return false;
     if (mesh.tetrahedra) {
-        io_fault(place, "mesh", SKEIN_ERROR_MESH, "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off",
-                 file, kind->name);
+        io_fault(place, "mesh", SKEIN_ERROR_MESH,
+                 "'%s' is made of tetrahedra: a %s needs faces, from .obj, .ply, .stl, .glb or .off", file, kind->name);
         io_mesh_free(&mesh);
         return false;
     }
@@ -236,7 +236,8 @@ static bool find_body(const builder *b, io_place place, const json_t *json, cons
         io_fault(place, path, SKEIN_ERROR_NAME, "there is no body '%s'%s", json_string_value(body),
                  hint_body(b, json_string_value(body), words));
     else if (json_is_integer(body))
-        io_fault(place, path, SKEIN_ERROR_NAME, "there is no body %" JSON_INTEGER_FORMAT ": the scene has %zu, counted from 0",
+        io_fault(place, path, SKEIN_ERROR_NAME,
+                 "there is no body %" JSON_INTEGER_FORMAT ": the scene has %zu, counted from 0",
                  json_integer_value(body), skein_object_count(b->world, SKEIN_BODY));
     else
         io_fault(place, path, SKEIN_ERROR_NAME, "expected the name or number of a body%s", io_json_instead(body, shown));
@@ -254,10 +255,11 @@ static bool find_elements(const builder *b, io_place place, index_list *list, co
     size_t what = 0, count;
     while (what < 4 && !(json_is_string(over) && !strcmp(json_string_value(over), words[what]))) what++;
     if (what == 4 || arities[what] != arity) {
-        io_fault(place, "particles.over", SKEIN_ERROR_VALUE,
-                 "expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a constraint on "
-                 "%zu particles%s",
-                 arity, io_json_instead(over, shown));
+        io_fault(
+            place, "particles.over", SKEIN_ERROR_VALUE,
+            "expected \"edges\" (of 2 particles), \"triangles\" (3), \"hinges\" or \"tetrahedra\" (4) for a constraint on "
+            "%zu particles%s",
+            arity, io_json_instead(over, shown));
         return false;
     }
     skein_body_elements(b->world, handle, (skein_elements)what, NULL, 0, &count);
@@ -276,7 +278,8 @@ static bool find_attachments(const builder *b, io_place place, index_list *list,
     skein_handle body, to;
     size_t count = 0;
     if (arity != 4 || json_object_get(json, "over")) {
-        io_fault(place, "particles", SKEIN_ERROR_VALUE, "\"to\" is for constraints on a particle and a triangle, such as attachment, and without \"over\"");
+        io_fault(place, "particles", SKEIN_ERROR_VALUE,
+                 "\"to\" is for constraints on a particle and a triangle, such as attachment, and without \"over\"");
         return false;
     }
     if (!find_body(b, place, json, "body", &body) || !find_body(b, place, json, "to", &to)) return false;
@@ -284,7 +287,8 @@ static bool find_attachments(const builder *b, io_place place, index_list *list,
     char *joined = json_is_string(pins) ? NULL : io_json_join(pins);
     const char *text = json_is_string(pins) ? json_string_value(pins) : joined;
     if (!text || !text[0]) {
-        io_fault(place, "particles.pins", SKEIN_ERROR_VALUE, "expected which particles are tied: [0, 1], {\"box\": [...]} or {\"sphere\": [...]}");
+        io_fault(place, "particles.pins", SKEIN_ERROR_VALUE,
+                 "expected which particles are tied: [0, 1], {\"box\": [...]} or {\"sphere\": [...]}");
         free(joined);
         return false;
     }
@@ -307,7 +311,8 @@ static bool find_attachments(const builder *b, io_place place, index_list *list,
 static bool read_particles(const builder *b, io_place place, index_list *list, const json_t *json, size_t arity) {
     if (!json_is_object(json)) return read_indices(list, place, json, arity);
     if (!only_known(place, json)) return false;
-    return json_object_get(json, "to") ? find_attachments(b, place, list, json, arity) : find_elements(b, place, list, json, arity);
+    return json_object_get(json, "to") ? find_attachments(b, place, list, json, arity)
+                                       : find_elements(b, place, list, json, arity);
 }
 
 static void add_constraint(const builder *b, io_place place, const skein_kind *kind, const json_t *object,
@@ -374,16 +379,16 @@ static bool add_of_kind(const builder *b, io_place place, const json_t *object, 
 
 static void add_object(builder *b, const char *path, const json_t *object, skein_category category) {
     static const char *const skip[] = {"type", NULL}, *const skip_particles[] = {"type", "particles", NULL},
-                      *const skip_budget[] = {"type", "budget_ms", NULL}; // which is the scene's
+                             *const skip_budget[] = {"type", "budget_ms", NULL}; // which is the scene's
     io_place place = {b->file, path, b->faults};
     const skein_kind *kind = kind_of(place, object, category);
     io_settings settings = {0};
-    bool read =
-        kind &&
-        io_settings_read(&settings, place, object, kind, category == SKEIN_CONSTRAINT ? skip_particles
-                                                        : category == SKEIN_METHOD   ? skip_budget
-                                                                                     : skip);
-    if (read) io_names_check(place, b->world, kind, &settings, (io_names_whole){!b->body_missing, !b->collider_missing});
+    bool read = kind && io_settings_read(&settings, place, object, kind,
+                                         category == SKEIN_CONSTRAINT ? skip_particles
+                                         : category == SKEIN_METHOD   ? skip_budget
+                                                                      : skip);
+    if (read)
+        io_names_check(place, b->world, kind, &settings, (io_names_whole){!b->body_missing, !b->collider_missing});
     bool good = read && add_of_kind(b, place, object, kind, &settings);
     if (!good && category == SKEIN_BODY) b->body_missing = true;
     if (!good && category == SKEIN_COLLIDER) b->collider_missing = true;

@@ -78,11 +78,13 @@ static void check_list(io_place place, const skein_world *world, const io_settin
     const char *list = io_settings_text(settings, field);
     names all;
     if (!list || !list[0]) return;
-    if (category == SKEIN_BODY && is_known(world, category, (word){list, strlen(list)}, &all)) return; // a name may have commas
+    if (category == SKEIN_BODY && is_known(world, category, (word){list, strlen(list)}, &all))
+        return; // a name may have commas
     for (word w; (w = next_of(&list, between)).length;) check_name(place, world, field, category, w);
 }
 
-void io_names_check(io_place place, const skein_world *world, const skein_kind *kind, const io_settings *settings, io_names_whole whole) {
+void io_names_check(io_place place, const skein_world *world, const skein_kind *kind, const io_settings *settings,
+                    io_names_whole whole) {
     static const struct {
         const char *field;
         skein_category of, names;

@@ -10,6 +10,7 @@ typedef struct io_names_whole {
     bool bodies, colliders;
 } io_names_whole;
 /* Of an object of a kind, whose settings have been read: whom it names is in the world before it. */
-void io_names_check(io_place place, const skein_world *world, const skein_kind *kind, const io_settings *settings, io_names_whole whole);
+void io_names_check(io_place place, const skein_world *world, const skein_kind *kind, const io_settings *settings,
+                    io_names_whole whole);
 
 #endif

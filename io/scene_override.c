@@ -89,7 +89,9 @@ static void leave_out_strangers(json_t *method, const char *type, json_t *notes)
         char note[300];
         char whole[200];
         snprintf(whole, sizeof whole, "method.%.150s", name);
-        if (!strcmp(name, "type") || skein_field_find(kind, name, NULL) || skein_field_find(io_scene_kind(), whole, NULL)) continue;
+        if (!strcmp(name, "type") || skein_field_find(kind, name, NULL) ||
+            skein_field_find(io_scene_kind(), whole, NULL))
+            continue;
         snprintf(note, sizeof note, "method.%.100s is left out: %s has no such field", name, type);
         json_array_append_new(notes, json_string(note));
         json_object_del(method, name);
@@ -101,8 +103,7 @@ static void leave_out_strangers(json_t *method, const char *type, json_t *notes)
 /* The kind of the object that an item of a section is; NULL where it is of none that is known. */
 static const skein_kind *kind_of_item(const json_t *item, skein_category category, const skein_kind *const *kinds) {
     const char *type = json_string_value(json_object_get(item, "type"));
-    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW)
-        return type ? io_kind_find(category, type, NULL) : NULL;
+    if (category != SKEIN_EXPORTER && category != SKEIN_VIEW) return type ? io_kind_find(category, type, NULL) : NULL;
     for (; kinds && *kinds; kinds++)
         if ((*kinds)->category == category && (category == SKEIN_VIEW || (type && !strcmp((*kinds)->name, type))))
             return *kinds;
@@ -195,8 +196,7 @@ static void name_default_method(json_t *root) {
     skein_world_destroy(world);
 }
 
-bool io_scene_override(json_t *root, const char *set, const skein_kind *const *kinds, io_faults *faults,
-                       json_t *notes) {
+bool io_scene_override(json_t *root, const char *set, const skein_kind *const *kinds, io_faults *faults, json_t *notes) {
     char option[200];
     snprintf(option, sizeof option, "--set %s", set);
     io_place place = {option, "", faults};

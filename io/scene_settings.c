@@ -99,8 +99,11 @@ static char *join_names(const json_t *list) {
 
 /* The texts of a body's own fields select parts of it, as a motion's "pins" do, and so have short forms. */
 static bool takes_lists(const skein_kind *kind, const skein_field *field) {
-    bool selects = kind->category == SKEIN_BODY ? is_own(kind, field)
-                                                : kind->category == SKEIN_MOTION && (!strcmp(field->name, "pins") || !strcmp(field->name, "jump_times") || !strcmp(field->name, "map"));
+    bool selects =
+        kind->category == SKEIN_BODY
+            ? is_own(kind, field)
+            : kind->category == SKEIN_MOTION &&
+                  (!strcmp(field->name, "pins") || !strcmp(field->name, "jump_times") || !strcmp(field->name, "map"));
     return field->type == SKEIN_FIELD_TEXT && selects;
 }
 
@@ -160,13 +163,15 @@ static bool is_bad_item(const skein_kind *kind, const skein_field *field, const 
 }
 
 /* Says what an item of a list ought to be. */
-static void report_item(io_place place, const char *name, const skein_kind *kind, const skein_field *field, const json_t *item) {
+static void report_item(io_place place, const char *name, const skein_kind *kind, const skein_field *field,
+                        const json_t *item) {
     char words[IO_JSON_WORDS_SIZE];
-    bool names = takes_names(kind, field), comma = names && json_is_string(item) && strchr(json_string_value(item), ',');
+    bool names = takes_names(kind, field),
+         comma = names && json_is_string(item) && strchr(json_string_value(item), ',');
     io_fault(place, name, SKEIN_ERROR_VALUE, "expected a %s, not %s%s",
-             names                     ? "name"
+             names                      ? "name"
              : takes_lists(kind, field) ? "number or a text"
-                                       : "number",
+                                        : "number",
              io_json_words(item, words), comma ? ": in a list each name is a text of its own, without commas" : "");
 }
 
@@ -185,12 +190,12 @@ static void report_type(io_place place, const char *name, const skein_kind *kind
     skein_value nothing = {4, {0, 0, 0}, NULL};
     skein_field_check(field, &nothing, &error);
     io_fault(place, name, SKEIN_ERROR_VALUE, "%s%s, not %s", error.message,
-             takes_names(kind, field)  ? " or a list of names"
+             takes_names(kind, field)   ? " or a list of names"
              : takes_lists(kind, field) ? ", a list of numbers and words, {\"box\": [...]} or {\"sphere\": [...]}"
-             : takes_rows(kind, field) ? " or a list of rows, [[0, 0, 0, 0], [1, 0, 0.5, 0]], say"
-             : takes_body(field)       ? " or its number"
-             : may_be_infinite(field)  ? " or \"infinite\""
-                                       : "",
+             : takes_rows(kind, field)  ? " or a list of rows, [[0, 0, 0, 0], [1, 0, 0.5, 0]], say"
+             : takes_body(field)        ? " or its number"
+             : may_be_infinite(field)   ? " or \"infinite\""
+                                        : "",
              io_json_words(json, words));
 }
 

@@ -11,8 +11,8 @@
 
 #include "io/study_inside.h"
 
-static const char *const members[] = {"study",  "name", "description", "scene", "set",
-                                      "vary", "repeat", "seed", "measure", "plot", NULL};
+static const char *const members[] = {"study",  "name", "description", "scene", "set", "vary",
+                                      "repeat", "seed", "measure",     "plot",  NULL};
 
 /* ---- members ---- */
 
@@ -81,8 +81,9 @@ static json_t *read_range(io_place place, const char *name, const json_t *range)
     snprintf(inside, sizeof inside, "vary.%.250s", name);
     check_members((io_place){place.file, inside, place.faults}, range, known);
     if (!json_is_number(from) || !json_is_number(to) || !count == !step) {
-        io_fault(place, name, SKEIN_ERROR_VALUE,
-                 "expected a range { \"from\": 0, \"to\": 3, \"count\": 7 }, or with \"step\" in the place of \"count\"");
+        io_fault(
+            place, name, SKEIN_ERROR_VALUE,
+            "expected a range { \"from\": 0, \"to\": 3, \"count\": 7 }, or with \"step\" in the place of \"count\"");
         return values;
     }
     bool by_ratio = is_log(place, range, name, a, b);
@@ -119,8 +120,7 @@ static void read_random(io_place place, study_varied *v, const json_t *spec) {
     if (json_array_size(ends) != 2 || !json_is_number(json_array_get(ends, 0)) ||
         !json_is_number(json_array_get(ends, 1)) || !(v->from <= v->to))
         io_fault(place, v->path, SKEIN_ERROR_VALUE, "random: expected the least and the most, [0, 3]");
-    if (whole && !json_is_boolean(whole))
-        io_fault(place, v->path, SKEIN_ERROR_VALUE, "whole: expected true or false");
+    if (whole && !json_is_boolean(whole)) io_fault(place, v->path, SKEIN_ERROR_VALUE, "whole: expected true or false");
     v->by_ratio = is_log(place, spec, v->path, v->from, v->to);
     if (v->whole && (v->by_ratio || v->from != floor(v->from) || v->to != floor(v->to)))
         io_fault(place, v->path, SKEIN_ERROR_VALUE, "whole numbers are drawn between whole numbers, on a linear scale");
@@ -195,7 +195,8 @@ static void read_measure(io_study *study, io_place top, size_t index, const json
                *given = text_in(place, spec, "name");
     while (over && (size_t)w->over < COUNT_OF(overs) && strcmp(overs[w->over], over) != 0) w->over++;
     if ((size_t)w->over == COUNT_OF(overs)) {
-        io_fault(place, "over", SKEIN_ERROR_VALUE, "expected \"end\", \"mean\", \"least\" or \"most\", not \"%s\"", over);
+        io_fault(place, "over", SKEIN_ERROR_VALUE, "expected \"end\", \"mean\", \"least\" or \"most\", not \"%s\"",
+                 over);
         w->over = IO_STUDY_END;
     }
     w->every = (int)number_in(place, spec, "every", 1, 1e6, true, 1);
@@ -234,8 +235,7 @@ static void check_columns(const io_study *study, io_place top) {
         for (size_t v = 0; v < study->varied_count; v++) taken |= !strcmp(name, study->varied[v].path);
         for (size_t c = 0; io_study_column_at(c); c++) taken |= !strcmp(name, io_study_column_at(c));
         if (!name[0] || strpbrk(name, "\n\"/,") || taken)
-            io_fault(top, "measure", SKEIN_ERROR_NAME,
-                     "the column '%s' %s: give one a \"name\"", name,
+            io_fault(top, "measure", SKEIN_ERROR_NAME, "the column '%s' %s: give one a \"name\"", name,
                      taken ? "is there twice" : "has no name, or one with a comma, a quote or a slash");
     }
 }
@@ -246,7 +246,8 @@ static void check_plot(io_study *study, io_place top) {
     io_place place = {top.file, "plot", top.faults};
     if (!plot) return;
     if (!json_is_object(plot)) {
-        io_fault(top, "plot", SKEIN_ERROR_VALUE, "expected an object, { \"x\": PATH, \"y\": PATH, \"show\": [MEASURE] }");
+        io_fault(top, "plot", SKEIN_ERROR_VALUE,
+                 "expected an object, { \"x\": PATH, \"y\": PATH, \"show\": [MEASURE] }");
         return;
     }
     check_members(place, plot, known);
@@ -254,8 +255,7 @@ static void check_plot(io_study *study, io_place top) {
         const char *axis = text_in(place, plot, known[k]);
         size_t v = 0;
         while (axis && v < study->varied_count && strcmp(axis, study->varied[v].path) != 0) v++;
-        if (axis && v == study->varied_count)
-            io_fault(place, known[k], SKEIN_ERROR_NAME, "'%s' is not varied", axis);
+        if (axis && v == study->varied_count) io_fault(place, known[k], SKEIN_ERROR_NAME, "'%s' is not varied", axis);
     }
     const json_t *show = json_object_get(plot, "show"), *labels = json_object_get(plot, "labels");
     for (size_t i = 0; i < json_array_size(show); i++) {
@@ -321,7 +321,8 @@ static io_scene *open_scene(io_study *study, io_place top, const json_t *scene, 
  * that only building finds. */
 static void read_scene(io_study *study, io_place top) {
     char **sets = read_sets(top, json_object_get(study->root, "set"));
-    io_scene *scene = sets ? open_scene(study, top, json_object_get(study->root, "scene"), (const char *const *)sets) : NULL;
+    io_scene *scene =
+        sets ? open_scene(study, top, json_object_get(study->root, "scene"), (const char *const *)sets) : NULL;
     study_free_sets(sets);
     if (!scene) {
         top.faults->count += !top.faults->count;
@@ -384,7 +385,8 @@ io_study *io_study_read_text(const char *text, size_t size, const char *path, co
     io_study *study = calloc(1, sizeof *study);
     if (study) study->root = json_loadb(text, size, JSON_REJECT_DUPLICATES, &wrong);
     if (!study || !study->root) {
-        if (study) io_fault(top, "", SKEIN_ERROR_SYNTAX, "line %d, column %d: %s", wrong.line, wrong.column, wrong.text);
+        if (study)
+            io_fault(top, "", SKEIN_ERROR_SYNTAX, "line %d, column %d: %s", wrong.line, wrong.column, wrong.text);
         free(study);
         return NULL;
     }

@@ -144,8 +144,9 @@ static skein_status open_journal(io_study_folder *f, const char *name, skein_err
     if (!status && (f->lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666)) < 0)
         status = io_error_set(error, SKEIN_ERROR_FILE, path, "cannot write: %s", strerror(errno));
     if (!status && flock(f->lock, LOCK_EX | LOCK_NB))
-        status = io_error_set(error, SKEIN_ERROR_FILE, path, "another process is at work on %s: wait for it, or stop it",
-                              f->parts > 1 ? "this part" : "this study");
+        status =
+            io_error_set(error, SKEIN_ERROR_FILE, path, "another process is at work on %s: wait for it, or stop it",
+                         f->parts > 1 ? "this part" : "this study");
     if (!status && !fstat(f->lock, &info) && info.st_size >= 16)
         status = io_journal_read(path, UINT64_MAX, take_row, f, &end, error);
     if (!status) f->journal = end ? io_journal_go_on(path, end, error) : io_journal_begin(path, error);

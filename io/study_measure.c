@@ -19,12 +19,16 @@ struct io_study_quantity {
     size_t offset;
 };
 
-#define NUMBER(name_, unit_, help_) {#name_, unit_, help_, OF_WORLD, false, offsetof(skein_statistics, name_)}
+#define NUMBER(name_, unit_, help_) \
+    { #name_, unit_, help_, OF_WORLD, false, offsetof(skein_statistics, name_) }
 #define AXIS(name_, of_, axis_, unit_, help_) \
-    {name_, unit_, help_, OF_WORLD, false, offsetof(skein_statistics, of_) + axis_ * sizeof(double)}
-#define COUNTED(name_, help_) {#name_, "", help_, OF_WORLD, true, offsetof(skein_statistics, name_)}
-#define ORDER(name_, unit_, help_) {#name_, unit_, help_, OF_FLOCK, false, offsetof(skein_order, name_)}
-#define PLACE(name_, place_, help_) {name_, "m", help_, OF_PLACES, false, place_}
+    { name_, unit_, help_, OF_WORLD, false, offsetof(skein_statistics, of_) + axis_ * sizeof(double) }
+#define COUNTED(name_, help_) \
+    { #name_, "", help_, OF_WORLD, true, offsetof(skein_statistics, name_) }
+#define ORDER(name_, unit_, help_) \
+    { #name_, unit_, help_, OF_FLOCK, false, offsetof(skein_order, name_) }
+#define PLACE(name_, place_, help_) \
+    { name_, "m", help_, OF_PLACES, false, place_ }
 static const io_study_quantity quantities[] = {
     NUMBER(kinetic_energy, "J", "energy of motion"),
     NUMBER(potential_energy, "J", "of gravity and potentials"),
@@ -108,7 +112,8 @@ static double take(const void *from, const io_study_quantity *what) {
 
 /* The body of that name, or number from 0; of none, the first flock where one is wanted. */
 static bool find_body(skein_world *world, const io_study_wanted *w, skein_handle *body) {
-    size_t number = w->body && strspn(w->body, "0123456789") == strlen(w->body) ? strtoull(w->body, NULL, 10) : SIZE_MAX;
+    size_t number =
+        w->body && strspn(w->body, "0123456789") == strlen(w->body) ? strtoull(w->body, NULL, 10) : SIZE_MAX;
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_value name = {0, {0, 0, 0}, ""};
         *body = skein_object_at(world, SKEIN_BODY, i);
@@ -166,7 +171,8 @@ static skein_status measure(skein_world *world, const io_study_wanted *w, looked
     } else {
         skein_surface surface = {.particle_count = (uint32_t)skein_particle_count(world)};
         if (w->body) status = skein_body_surface(world, body, &surface);
-        *x = status ? NAN : measure_places(world, surface.first_particle, surface.particle_count, (place)w->what->offset);
+        *x = status ? NAN
+                    : measure_places(world, surface.first_particle, surface.particle_count, (place)w->what->offset);
     }
     if (status) *error = *skein_world_error(world);
     return status;

@@ -68,7 +68,8 @@ static void run_frames(run *r, skein_world *world, const io_scene_settings *sett
     io_verdict verdict = io_verdict_begin(world, settings->most_stretch, &r->end);
     for (;;) {
         bool last = r->frames == settings->frames, finite = io_is_finite(world);
-        if (io_study_measure_now(world, study->wanted, r->notes, study->wanted_count, r->frames, last || !finite, &error)) {
+        if (io_study_measure_now(world, study->wanted, r->notes, study->wanted_count, r->frames, last || !finite,
+                                 &error)) {
             end_with(r, "failed", &error);
             return;
         }
@@ -108,7 +109,8 @@ static json_t *describe(const run *r, size_t row) {
     bool measured = !strcmp(r->outcome, "good") || !strcmp(r->outcome, "beyond bounds");
     json_t *result = json_object(), *measures = json_array();
     for (size_t m = 0; m < study->wanted_count; m++)
-        json_array_append_new(measures, measured ? number(io_study_measured(&study->wanted[m], &r->notes[m])) : json_null());
+        json_array_append_new(measures,
+                              measured ? number(io_study_measured(&study->wanted[m], &r->notes[m])) : json_null());
     const struct {
         const char *name;
         json_t *value;
@@ -154,7 +156,8 @@ json_t *io_study_run(const io_study *study, size_t row, int threads, bool (*go_o
         skein_world *world = scene ? io_scene_build(scene, &desc, &faults) : NULL;
         if (scene) r->scene_hash = io_scene_hash(scene);
         if (world && !faults.count) run_frames(r, world, io_scene_get(scene), go_on, user);
-        else if (!r->outcome) end_with(r, "refused", &(skein_error){SKEIN_ERROR_MEMORY, "scene.json", "could not be built"});
+        else if (!r->outcome)
+            end_with(r, "refused", &(skein_error){SKEIN_ERROR_MEMORY, "scene.json", "could not be built"});
         skein_world_destroy(world);
         io_scene_free(scene);
         r->seconds = seconds_now() - start;

@@ -14,7 +14,8 @@ static const struct {
     bool is_number;
 } columns[] = {
     {"row", "", "of the study, from 0", true},
-    {"outcome", "", "good; blew up, beyond bounds, refused, failed or crashed: measures are nan but of the second", false},
+    {"outcome", "", "good; blew up, beyond bounds, refused, failed or crashed: measures are nan but of the second",
+     false},
     {"frames", "", "that were run", true},
     {"steps", "", "that were taken", true},
     {"time", "s", "simulated", true},
@@ -118,8 +119,7 @@ static skein_status write_timings(const io_study *study, json_t *const *rows, co
     if (!o) return error->status;
     io_output_printf(o, "row,seconds\n");
     for (size_t row = 0; row < study->rows; row++)
-        if (rows[row])
-            io_output_printf(o, "%zu,%.6g\n", row, json_number_value(json_object_get(rows[row], "seconds")));
+        if (rows[row]) io_output_printf(o, "%zu,%.6g\n", row, json_number_value(json_object_get(rows[row], "seconds")));
     return io_output_commit(o, error);
 }
 
@@ -217,8 +217,8 @@ static size_t fill(column *all, const io_study *study, json_t *const *rows, size
     }
     for (size_t k = 0; good && k < COUNT_OF(columns); k++) {
         column *c = &all[n++];
-        c->set = (io_hdf5_set){.name = columns[k].name,
-                               .notes = {{"about", columns[k].about}, {"unit", columns[k].unit}}};
+        c->set =
+            (io_hdf5_set){.name = columns[k].name, .notes = {{"about", columns[k].about}, {"unit", columns[k].unit}}};
         good = columns[k].is_number ? fill_numbers(c, study, rows, count, k, column_number)
                                     : fill_texts(c, study, rows, count, k, column_cell);
     }

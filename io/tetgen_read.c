@@ -198,8 +198,7 @@ skein_status io_tetrahedra_read_files(const char *path, size_t most, io_mesh *ou
     io_bytes bytes[2] = {{NULL, 0}, {NULL, 0}};
     skein_status status =
         paths[0] && paths[1] ? SKEIN_OK : io_error_set(error, SKEIN_ERROR_MEMORY, path, "out of memory");
-    for (int i = 0; i < 2 && !status; i++)
-        status = io_file_read_beside(path, paths[i], most, &bytes[i], error);
+    for (int i = 0; i < 2 && !status; i++) status = io_file_read_beside(path, paths[i], most, &bytes[i], error);
     if (!status) {
         io_text node = {bytes[0].data, bytes[0].size, paths[0]}, ele = {bytes[1].data, bytes[1].size, paths[1]};
         status = io_tetrahedra_read(&node, &ele, out, warnings, error);

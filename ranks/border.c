@@ -180,7 +180,8 @@ static void list_for(shared_run *run, const skein_share_look *look, const skein_
     run->out[r].size = 0;
     for (size_t slot = 0; slot < state->slot_count; slot++) {
         const skein_real *p = state->position[slot], *v = state->velocity[slot];
-        bool near = (p[0] >= from[0]) & (p[0] <= to[0]) & (p[1] >= from[1]) & (p[1] <= to[1]) & (p[2] >= from[2]) & (p[2] <= to[2]);
+        bool near = (p[0] >= from[0]) & (p[0] <= to[0]) & (p[1] >= from[1]) & (p[1] <= to[1]) & (p[2] >= from[2]) &
+                    (p[2] <= to[2]);
         if (!near) continue;
         uint32_t i = state->particle_of[slot];
         if (i < look->seen_first || i >= look->seen_end || !shared_is_own(run, i) || !is_somewhere(p)) continue;
@@ -210,7 +211,8 @@ static void take_in(shared_run *run, const skein_share_look *look, const skein_s
             run->tale.overflow = 1, body->full = true; // the step is taken again, with more
             continue;
         }
-        size_t i = body->first + (body->of.loose ? body->seen++ : come[k].number - body->of.first), slot = state->slot_of[i];
+        size_t i = body->first + (body->of.loose ? body->seen++ : come[k].number - body->of.first),
+               slot = state->slot_of[i];
         run->number[i] = come[k].number;
         for (int c = 0; c < 3; c++)
             state->position[slot][c] = come[k].position[c], state->velocity[slot][c] = come[k].velocity[c];

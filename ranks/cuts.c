@@ -69,7 +69,10 @@ void ranks_cut_space(ranks_sample *samples, size_t count, int ranks, const doubl
     size_t part = 0;
     double wanted = part_of(all, first, ranks, burden);
     while (part < count && sum + samples[part].work / 2 < wanted) sum += samples[part++].work;
-    *cuts = (ranks_cut){part < count ? samples[part].place[axis] : count ? samples[count - 1].place[axis] : 0, axis, first};
+    *cuts = (ranks_cut){part < count ? samples[part].place[axis]
+                        : count      ? samples[count - 1].place[axis]
+                                     : 0,
+                        axis, first};
     ranks_cut_space(samples, part, first, burden, cuts + 1);
     ranks_cut_space(samples + part, count - part, ranks - first, burden ? burden + first : NULL, cuts + first);
 }

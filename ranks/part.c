@@ -115,7 +115,8 @@ static void make_world(shared_run *run) {
 
 void shared_make_room(shared_run *run, const size_t *birds) {
     bool fits = run->world != NULL;
-    for (size_t b = 0; b < run->body_count && fits; b++) fits = !run->bodies[b].of.loose || birds[b] <= run->bodies[b].room;
+    for (size_t b = 0; b < run->body_count && fits; b++)
+        fits = !run->bodies[b].of.loose || birds[b] <= run->bodies[b].room;
     if (fits) return;
     shared_bytes kept = {NULL, 0, 0};
     double time = 0;
@@ -226,8 +227,10 @@ static double find_burden_cost(const shared_run *run) {
 }
 
 void shared_balance(shared_run *run) {
-    size_t most = SAMPLES / (size_t)run->count, birds = shared_own(run), stride = birds / most + 1, filled = 0, passed = 0;
-    ranks_sample *all = malloc((most * (size_t)run->count + most) * sizeof *all), *own = all + most * (size_t)run->count;
+    size_t most = SAMPLES / (size_t)run->count, birds = shared_own(run), stride = birds / most + 1, filled = 0,
+           passed = 0;
+    ranks_sample *all = malloc((most * (size_t)run->count + most) * sizeof *all),
+                 *own = all + most * (size_t)run->count;
     double *burden = calloc((size_t)run->count, sizeof *burden);
     if (!all || !burden) shared_give_up(run, "out of memory");
     const skein_state state = shared_state(run);

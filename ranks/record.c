@@ -37,10 +37,9 @@ void shared_record_open(shared_run *run, const char *folder) {
     if (run->rank) return;
     snprintf(own, sizeof own, "%.4000s.xdmf", run->parts.folder);
     run->parts.index = fopen(own, "wb");
-    if (!run->parts.index ||
-        fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
-              "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
-              run->parts.index) < 0)
+    if (!run->parts.index || fputs("<?xml version=\"1.0\"?>\n<Xdmf Version=\"3.0\">\n <Domain>\n"
+                                   "  <Grid Name=\"run\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
+                                   run->parts.index) < 0)
         fail(run, own);
 }
 
@@ -75,11 +74,16 @@ static void put_item(FILE *to, const char *name, int rank, const char *type, siz
 static void put_frame(shared_run *run, double time, const shared_place *places) {
     FILE *to = run->parts.index;
     const char *slash = strrchr(run->parts.folder, '/'), *name = slash ? slash + 1 : run->parts.folder;
-    fprintf(to, "   <Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"%.17g\"/>\n", time);
+    fprintf(to,
+            "   <Grid Name=\"frame\" GridType=\"Collection\" CollectionType=\"Spatial\">\n    <Time Value=\"%.17g\"/>\n",
+            time);
     for (int r = 0; r < run->count; r++) {
         uint64_t n = places[r].count, at = places[r].at;
         if (!n) continue;
-        fprintf(to, "    <Grid Name=\"rank %d\">\n     <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%" PRIu64 "\"/>\n", r, n);
+        fprintf(to,
+                "    <Grid Name=\"rank %d\">\n     <Topology TopologyType=\"Polyvertex\" NumberOfElements=\"%" PRIu64
+                "\"/>\n",
+                r, n);
         fprintf(to, "     <Geometry GeometryType=\"XYZ\">\n");
         put_item(to, name, r, "Float", sizeof(skein_real), 3, at + 4 * n, n);
         fprintf(to, "     </Geometry>\n     <Attribute Name=\"number\" AttributeType=\"Scalar\" Center=\"Node\">\n");
@@ -90,7 +94,8 @@ static void put_frame(shared_run *run, double time, const shared_place *places) 
     }
     fprintf(to, "   </Grid>\n");
     off_t end = ftello(to);
-    if (fputs(end_of_index, to) < 0 || fflush(to) || end < 0 || fseeko(to, end, SEEK_SET)) fail(run, "the index of ranks' files");
+    if (fputs(end_of_index, to) < 0 || fflush(to) || end < 0 || fseeko(to, end, SEEK_SET))
+        fail(run, "the index of ranks' files");
 }
 
 void shared_record_frame(shared_run *run, double time) {
@@ -104,6 +109,7 @@ void shared_record_frame(shared_run *run, double time) {
 void shared_record_close(shared_run *run) {
     FILE *files[] = {run->parts.data, run->parts.index};
     for (int i = 0; i < 2; i++)
-        if (files[i] && fclose(files[i])) fprintf(stderr, "skein: rank %d: its part of the recording: %s\n", run->rank, strerror(errno));
+        if (files[i] && fclose(files[i]))
+            fprintf(stderr, "skein: rank %d: its part of the recording: %s\n", run->rank, strerror(errno));
     run->parts.data = run->parts.index = NULL;
 }

@@ -11,10 +11,10 @@
 #include "ranks/shared_inside.h"
 
 enum {
-    EVERY = 16,       /* steps between looks at the balance, */
-    CROSS = 4,        /* and between looks at who has crossed: ranks know where their birds are, beyond cuts or not */
-    FEW = 1 << 16,    /* birds, whose state is kept before every step */
-    SURE = 7,         /* eighths of the room: with fewer birds a step cannot need more */
+    EVERY = 16,         /* steps between looks at the balance, */
+    CROSS = 4,          /* and between looks at who has crossed: ranks know where their birds are, beyond cuts or not */
+    FEW = 1 << 16,      /* birds, whose state is kept before every step */
+    SURE = 7,           /* eighths of the room: with fewer birds a step cannot need more */
     WORK_OF_A_BIRD = 64 /* constraints or particles of whole bodies that take as long, until it is known */
 };
 static const double most_imbalance = 0.1;
@@ -129,7 +129,8 @@ static bool is_unsure(const shared_run *run, const shared_body *body) {
     size_t elsewhere = 0;
     if (!body->of.loose) return false;
     for (size_t b = 0; b < run->body_count; b++)
-        if (!run->bodies[b].of.loose && run->bodies[b].of.enabled && !run->bodies[b].own) elsewhere += run->bodies[b].of.count;
+        if (!run->bodies[b].of.loose && run->bodies[b].of.enabled && !run->bodies[b].own)
+            elsewhere += run->bodies[b].of.count;
     return body->room < FEW || (body->most + elsewhere) * 8 >= body->room * SURE;
 }
 
@@ -189,8 +190,9 @@ static void tell_bodies(shared_run *run) {
 static int owner_of(const shared_run *run, uint32_t number, const skein_real p[4]) {
     const shared_body *body = &run->bodies[shared_body_with(run, number)];
     if (!body->of.enabled) return run->count;
-    return body->of.loose ? ranks_owner(run->cuts, run->count, (const double[3]){(double)p[0], (double)p[1], (double)p[2]})
-                          : body->rank;
+    return body->of.loose
+               ? ranks_owner(run->cuts, run->count, (const double[3]){(double)p[0], (double)p[1], (double)p[2]})
+               : body->rank;
 }
 
 /* Cuts space by where the leader's birds are. What one costs is not known yet: each rank gets as many, or fewer where
@@ -423,8 +425,8 @@ void shared_record(shared_run *run, const char *folder, double time) {
 void shared_measure(shared_run *run, shared_figures *figures) {
     call(run, (shared_call){.what = TELL});
     double exchange = 0, all = 0, bytes = 0;
-    *figures = (shared_figures){.ranks = run->count, .cuts = run->cut_count, .imbalance = imbalance_of(run),
-                                .start_seconds = run->start};
+    *figures = (shared_figures){
+        .ranks = run->count, .cuts = run->cut_count, .imbalance = imbalance_of(run), .start_seconds = run->start};
     for (size_t b = 0; b < run->body_count; b++)
         figures->whole_bodies += !run->bodies[b].of.loose && run->bodies[b].of.enabled;
     for (int r = 0; r < run->count; r++) {

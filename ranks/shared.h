@@ -32,15 +32,15 @@ typedef struct shared_source {
 /* What sharing has cost so far, of all ranks. */
 typedef struct shared_figures {
     int ranks;
-    double imbalance;       /* of the seconds that ranks worked since the cuts were made: most by mean, less 1 */
-    double exchange_share;  /* of the seconds of all steps, those that ranks exchanged birds, or waited for each other */
-    double bytes_per_step;  /* that were sent, by all ranks */
-    double start_seconds;   /* to make parts and send all to them, before the first step: in no other figure */
-    size_t cuts;            /* how often space was cut */
-    size_t moved;           /* birds that went to another rank */
+    double imbalance;      /* of the seconds that ranks worked since the cuts were made: most by mean, less 1 */
+    double exchange_share; /* of the seconds of all steps, those that ranks exchanged birds, or waited for each other */
+    double bytes_per_step; /* that were sent, by all ranks */
+    double start_seconds;  /* to make parts and send all to them, before the first step: in no other figure */
+    size_t cuts;           /* how often space was cut */
+    size_t moved;          /* birds that went to another rank */
     size_t most_birds, most_seen; /* of a rank: its own, and others' that it sees */
-    size_t most_memory;     /* bytes that a rank but the first, which has the whole run once more, has had at once */
-    size_t whole_bodies;    /* that live on one rank each */
+    size_t most_memory;  /* bytes that a rank but the first, which has the whole run once more, has had at once */
+    size_t whole_bodies; /* that live on one rank each */
 } shared_figures;
 
 /* NULL where there is no memory. */

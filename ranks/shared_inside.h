@@ -41,23 +41,23 @@ typedef struct shared_cells {
 
 /* A body of the run, and what of it this rank has. */
 typedef struct shared_body {
-    skein_share_body of;   /* the whole run's, as the leader knows it */
-    int rank;              /* where it lives, if it is whole */
-    size_t first, room;    /* in this rank's world */
-    size_t own, seen;      /* of a loose one: so many of its own, and up to `seen` others'. A whole one has all, or none */
-    size_t most;           /* that were there in the last step: `seen`, of the rule that saw the most */
-    bool full;             /* more came than it has room for */
+    skein_share_body of; /* the whole run's, as the leader knows it */
+    int rank;            /* where it lives, if it is whole */
+    size_t first, room;  /* in this rank's world */
+    size_t own, seen; /* of a loose one: so many of its own, and up to `seen` others'. A whole one has all, or none */
+    size_t most;      /* that were there in the last step: `seen`, of the rule that saw the most */
+    bool full;        /* more came than it has room for */
 } shared_body;
 
 /* What a rank tells with each call. */
 typedef struct shared_tale {
-    double work;            /* seconds, since space was cut, without exchanges */
+    double work;               /* seconds, since space was cut, without exchanges */
     double all_work, exchange; /* since the run began */
     double bytes;
     size_t moved, own, seen;
     size_t memory; /* bytes that its process has had at once, at most */
-    int overflow; /* more came than it has room for */
-    int unsure;   /* whether that may happen in the next step */
+    int overflow;  /* more came than it has room for */
+    int unsure;    /* whether that may happen in the next step */
 } shared_tale;
 
 struct shared_run {
@@ -74,16 +74,16 @@ struct shared_run {
     double *burden;     /* of each rank: the work of whole bodies there, in birds */
     shared_bytes *out;  /* to each rank */
     shared_bytes in;
-    shared_box *boxes;  /* (count + 1) x body_count: of all ranks, and its own */
-    shared_cells *wanted; /* body_count */
-    size_t *sizes;      /* count x count */
+    shared_box *boxes;        /* (count + 1) x body_count: of all ranks, and its own */
+    shared_cells *wanted;     /* body_count */
+    size_t *sizes;            /* count x count */
     shared_tale tale, *tales; /* own, and of all ranks */
-    size_t since_cut;   /* steps */
-    double start;       /* seconds that spreading took */
+    size_t since_cut;         /* steps */
+    double start;             /* seconds that spreading took */
     size_t cut_count, steps;
     shared_bytes before; /* own birds as a step began, while it may turn out that the room is too small */
-    bool keeps, kept; /* it is, and already was when all were spread */
-    bool unclean; /* who is its own has changed: there may be somebody left where there is room */
+    bool keeps, kept;    /* it is, and already was when all were spread */
+    bool unclean;        /* who is its own has changed: there may be somebody left where there is room */
     bool dismissed;
     bool guessed; /* space is cut without knowing what birds cost */
     struct {

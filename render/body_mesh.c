@@ -249,8 +249,7 @@ static uint64_t hash(uint64_t so_far, const void *data, size_t words) {
     return so_far;
 }
 
-bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions,
-                           bool round) {
+bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions, bool round) {
     maker m = {mesh, surface, positions, NULL, NULL, NULL, round};
     bool good = make_corner_uv(&m) && make_edges(&m) && make_vertices(&m) && make_triangles(&m) &&
                 render_body_mesh_leave_out(mesh, surface, NULL);

@@ -20,15 +20,14 @@ typedef struct render_body_mesh {
     uint32_t *all_triangles, *all_edges; /* of the whole body, cut or not */
     size_t all_edge_count;
     uint32_t *edge_of_side; /* of each corner of a face: the edge to the next one, among all */
-    float *uv;           /* vertex_count x 2 */
-    double sides[2];     /* metres along u and v from 0 to 1, about */
-    bool grid;           /* u goes along the rows */
-    uint64_t shape;      /* a hash of all this; never 0 */
+    float *uv;              /* vertex_count x 2 */
+    double sides[2];        /* metres along u and v from 0 to 1, about */
+    bool grid;              /* u goes along the rows */
+    uint64_t shape;         /* a hash of all this; never 0 */
 } render_body_mesh;
 
 /* Start from {0}. `positions` are those of all particles. A `round` body has no creases. False where there is no memory: what is there is released. */
-bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions,
-                           bool round);
+bool render_body_mesh_make(render_body_mesh *mesh, const skein_surface *surface, const double *positions, bool round);
 /* Leaves out the faces for which `cut` holds, and the edges that no other face has; NULL: none. It is whole once made. The
  * surface is the one that it was made from. False where there is no memory: nothing changes. */
 bool render_body_mesh_leave_out(render_body_mesh *mesh, const skein_surface *surface, const uint8_t *cut);

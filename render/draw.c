@@ -32,7 +32,7 @@ struct render_draw {
     render_instances balls, particles, lines;
     render_solids solids;
     render_flight flight;
-    size_t part;                        /* triangles that are drawn at a time; 0: all */
+    size_t part; /* triangles that are drawn at a time; 0: all */
     double line_scale;
     const render_shape *particle_shape; /* in this frame */
     render_mesh *meshes;                /* by the surface's place in the frame */
@@ -103,8 +103,7 @@ static skein_status make_all(render_draw *draw, skein_error *error) {
     render_paints_create(&draw->paints);
     glCreateVertexArrays(1, &draw->no_arrays);
     glCreateBuffers(1, &draw->uniforms);
-    glNamedBufferStorage(draw->uniforms, RENDER_SCENE_OFFSET + sizeof(render_scene_block), NULL,
-                         GL_DYNAMIC_STORAGE_BIT);
+    glNamedBufferStorage(draw->uniforms, RENDER_SCENE_OFFSET + sizeof(render_scene_block), NULL, GL_DYNAMIC_STORAGE_BIT);
     return SKEIN_OK;
 }
 

@@ -107,8 +107,8 @@ typedef struct render_birds {
     double span; /* from tip to tip */
     render_feathers paint;
     float colour[3];
-    double range; /* m/s: the speed at the end of the colours */
-    double least[3], most[3]; /* the box that they are in, about */
+    double range;                       /* m/s: the speed at the end of the colours */
+    double least[3], most[3];           /* the box that they are in, about */
     double core_least[3], core_most[3]; /* and the one without strays */
 } render_birds;
 

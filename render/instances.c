@@ -97,8 +97,7 @@ static void stage_ball(float *out, const double centre[3], double radius, const 
     render_to_light(marking, 1.0f, out + 16);
 }
 
-skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame,
-                                            skein_error *error) {
+skein_status render_instances_bring_spheres(render_instances *instances, const render_frame *frame, skein_error *error) {
     skein_status status = reserve(instances, frame->sphere_count, ball_floats, error);
     if (status != SKEIN_OK) return status;
     for (size_t i = 0; i < frame->sphere_count; i++) {

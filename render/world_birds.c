@@ -135,11 +135,11 @@ void render_world_birds_show(render_world_birds *all, const render_view *view, d
         birds->range = range;
         bool predator = all->body[i] == SIZE_MAX;
         if (predator) memcpy(birds->colour, predator_colour, sizeof birds->colour);
-        birds->paint = predator                            ? RENDER_ONE_FEATHER
+        birds->paint = predator                              ? RENDER_ONE_FEATHER
                        : view->colour == RENDER_BY_DIRECTION ? RENDER_BY_DIRECTION_FEATHERS
-                       : view->colour == RENDER_BY_SPEED   ? RENDER_BY_SPEED_FEATHERS
-                       : view->colour == RENDER_BY_BODY    ? RENDER_ONE_FEATHER
-                                                           : RENDER_OWN_FEATHERS;
+                       : view->colour == RENDER_BY_SPEED     ? RENDER_BY_SPEED_FEATHERS
+                       : view->colour == RENDER_BY_BODY      ? RENDER_ONE_FEATHER
+                                                             : RENDER_OWN_FEATHERS;
     }
     frame->birds = all->birds;
     frame->bird_count = all->count;

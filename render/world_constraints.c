@@ -39,7 +39,8 @@ static double strongest_of(const looked *l) {
 }
 
 /* Through its particles in their order. A closed surface has its own picture. */
-static void add_line(render_world_lines *lines, const render_world_state *state, const looked *l, const float colour[3]) {
+static void add_line(render_world_lines *lines, const render_world_state *state, const looked *l,
+                     const float colour[3]) {
     for (size_t i = 1; i < l->count && l->value.particle_count <= MOST_PARTICLES; i++)
         if (state->shown[l->particle[i]] != RENDER_HIDDEN)
             render_add_line(lines, RENDER_CONSTRAINTS, &state->positions[3 * (size_t)l->particle[i - 1]],

@@ -97,7 +97,8 @@ static neighbour *find_neighbours(skein_world *world, skein_handle force, const 
         for (size_t k = 0; k < 3; k++) off[k] = state->positions[3 * p + k] - state->positions[3 * (size_t)chosen + k];
         double square = render_dot(off, off);
         bool seen = sees_all || !(speed > 0) || render_dot(off, v) >= view * speed * sqrt(square);
-        if (p == chosen || !(square > 0 && square < reach * reach) || !seen || !skein_particle_present(world, p)) continue;
+        if (p == chosen || !(square > 0 && square < reach * reach) || !seen || !skein_particle_present(world, p))
+            continue;
         all[(*count)++] = (neighbour){square, (uint32_t)p};
     }
     qsort(all, *count, sizeof *all, by_distance);
@@ -132,7 +133,8 @@ void render_add_zones(render_world_lines *lines, skein_world *world, const rende
 /* The middle of the first flock. */
 static void flock_middle(const render_world_birds *birds, double middle[3]) {
     for (int k = 0; k < 3; k++)
-        middle[k] = birds->count && birds->birds[0].count ? 0.5 * (birds->birds[0].least[k] + birds->birds[0].most[k]) : 0;
+        middle[k] =
+            birds->count && birds->birds[0].count ? 0.5 * (birds->birds[0].least[k] + birds->birds[0].most[k]) : 0;
 }
 
 static bool add_predator(render_world_birds *birds, render_world_lines *lines, skein_world *world,

@@ -24,7 +24,7 @@ typedef struct body {
     skein_handle handle;
     bool rope;
     skein_look look;
-    skein_surface source;             /* that it was made from */
+    skein_surface source; /* that it was made from */
     bool made;
     render_body_mesh mesh;
     skein_cuts cuts;   /* what the mesh is drawn without */
@@ -216,7 +216,8 @@ static render_pattern pattern_of(const render_world_frame *made) {
 }
 
 static void dress(const render_world_frame *made, const body *b, size_t index, render_material *material) {
-    bool suited = made->view.pattern == 0 && pattern_of(made) == RENDER_WEAVE, jelly = suited && b->look == SKEIN_LOOK_JELLY;
+    bool suited = made->view.pattern == 0 && pattern_of(made) == RENDER_WEAVE,
+         jelly = suited && b->look == SKEIN_LOOK_JELLY;
     render_pattern pattern = suited && b->look == SKEIN_LOOK_PLAIN ? RENDER_PLAIN : pattern_of(made);
     *material = jelly                     ? render_jelly_material(index)
                 : pattern == RENDER_PLAIN ? render_plain_material(index)
@@ -260,8 +261,7 @@ static skein_status take_body(render_world_frame *made, const skein_world *world
     bool same = b->made && b->handle.index == handle.index && b->handle.generation == handle.generation &&
                 b->source.face_vertices == surface.face_vertices && b->source.corner_uv == surface.corner_uv &&
                 b->source.vertex_count == surface.vertex_count && b->look == look_of(world, handle);
-    if (!same && !make_body(b, world, &surface, handle))
-        return render_fail_memory(error, "a body's surface");
+    if (!same && !make_body(b, world, &surface, handle)) return render_fail_memory(error, "a body's surface");
     if (!leave_out_cut(b, world)) return render_fail_memory(error, "a body's surface");
     gather(b, &made->state);
 
@@ -457,15 +457,15 @@ static void take_look(render_world_frame *made) {
 static bool needs_no_numbers(render_world_frame *made, const skein_world *world) {
     skein_device_info device = skein_world_device(world);
     if (made->bird != UINT32_MAX || render_has_flying_predator(world)) return false;
-    if (device.device != SKEIN_DEVICE_CURRENT_GL || !device.position_buffer || made->view.velocities || made->view.contacts ||
-        made->state.particle_count != skein_particle_count(world) || ++made->updates % updates_between_looks == 0)
+    if (device.device != SKEIN_DEVICE_CURRENT_GL || !device.position_buffer || made->view.velocities ||
+        made->view.contacts || made->state.particle_count != skein_particle_count(world) ||
+        ++made->updates % updates_between_looks == 0)
         return false;
     size_t birds = 0;
     for (size_t i = 0; i < skein_object_count(world, SKEIN_BODY); i++) {
         skein_handle handle = skein_object_at(world, SKEIN_BODY, i);
         skein_surface surface;
-        if (!render_are_birds(world, handle, &made->view) ||
-            skein_body_surface(world, handle, &surface) != SKEIN_OK)
+        if (!render_are_birds(world, handle, &made->view) || skein_body_surface(world, handle, &surface) != SKEIN_OK)
             return false;
         birds += surface.particle_count;
     }

@@ -25,7 +25,7 @@ struct render_implicit {
     render_bounds box, searched;
     uint64_t key; /* of what the mesh was made from */
     render_net net;
-    float *uv; /* of terrain: metres along x and z */
+    float *uv;          /* of terrain: metres along x and z */
     bool has_triangles; /* it is drawn by them, and has no net */
     render_world_triangles triangles;
 };
@@ -146,12 +146,14 @@ static void draw_in(render_bounds *box, const found *f) {
 }
 
 /* The box in which a surface is looked for first: half a side of it, and its middle. */
-static double begin_search(const skein_world *world, render_implicit *it, const render_bounds *things, double middle[3]) {
+static double begin_search(const skein_world *world, render_implicit *it, const render_bounds *things,
+                           double middle[3]) {
     double size = room_around * render_bounds_radius(things);
     render_bounds_centre(things, middle);
     if (!(size > 0)) {
         skein_pose pose;
-        if (skein_collider_pose(world, it->handle, &pose) == SKEIN_OK) memcpy(middle, pose.position, sizeof pose.position);
+        if (skein_collider_pose(world, it->handle, &pose) == SKEIN_OK)
+            memcpy(middle, pose.position, sizeof pose.position);
         size = 2;
     }
     it->searched = render_bounds_nothing();

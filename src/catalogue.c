@@ -85,8 +85,7 @@ skein_status skein_constraint_add(skein_world *world, const char *kind, const ui
     return type ? sk_world_add_constraint(world, type, particles, count, settings, handle) : SKEIN_ERROR_NAME;
 }
 
-skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings,
-                                    size_t *arity) {
+skein_status skein_constraint_arity(skein_world *world, const char *kind, const skein_setting *settings, size_t *arity) {
     SK_NEED(world, world);
     SK_NEED(world, kind);
     SK_NEED(world, arity);
@@ -94,8 +93,7 @@ skein_status skein_constraint_arity(skein_world *world, const char *kind, const 
     return type ? sk_world_find_arity(world, type, settings, arity) : SKEIN_ERROR_NAME;
 }
 
-skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings,
-                             skein_handle *handle) {
+skein_status skein_force_add(skein_world *world, const char *kind, const skein_setting *settings, skein_handle *handle) {
     SK_NEED(world, world);
     SK_NEED(world, kind);
     const sk_force_type *type = type_of(world, SKEIN_FORCE, kind);

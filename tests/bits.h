@@ -39,9 +39,9 @@ static uint64_t hash_of_run(const bits_case *c, const char *isa, int threads, in
     must(world, skein_body_add(world, "cloth", NULL,
                                SKEIN_SETTINGS(SKEIN_PAIR("grid", 53, 70), SKEIN_VEC3("position", 0.1, 0.6, 0),
                                               SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("stretch.stiffness", 30),
-                                              SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1),
-                                              SKEIN_REAL("stretch.damping", 0.001), SKEIN_REAL("stretch.limit", 0.05),
-                                              SKEIN_REAL("stretch.tether", 0.01)),
+                                              SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"),
+                                              SKEIN_REAL("bend.stiffness", 1), SKEIN_REAL("stretch.damping", 0.001),
+                                              SKEIN_REAL("stretch.limit", 0.05), SKEIN_REAL("stretch.tether", 0.01)),
                                NULL));
     must(world, skein_body_add(world, "cloth", NULL,
                                SKEIN_SETTINGS(SKEIN_PAIR("grid", 21, 33), SKEIN_VEC3("position", 0.2, 0.7, 0.1),
@@ -51,7 +51,8 @@ static uint64_t hash_of_run(const bits_case *c, const char *isa, int threads, in
                                NULL));
     must(world, skein_body_add(world, "cloth", &mesh,
                                SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.5, 0), SKEIN_REAL("stretch.stiffness", 30),
-                                              SKEIN_TEXT("pins", "0"), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
+                                              SKEIN_TEXT("pins", "0"), SKEIN_TEXT("bend.by", "springs"),
+                                              SKEIN_REAL("bend.stiffness", 1)),
                                NULL));
     for (int i = 0; i < 37; i++) {
         double x[] = {0.03 * i - 0.5, 0.55, 0.01 * i}, v[] = {0.1, -0.5, 0.02 * i}, mass = 0.01 + 0.001 * i;

@@ -33,7 +33,8 @@ static inline double crossing_volume(vec3 a, vec3 b, vec3 c, vec3 d) {
 static inline bool crossing_is(const vec3 *x, uint32_t p, uint32_t q, const uint32_t t[3]) {
     for (int k = 0; k < 3; k++)
         if (p == t[k] || q == t[k]) return false;
-    double one = crossing_volume(x[t[0]], x[t[1]], x[t[2]], x[p]), two = crossing_volume(x[t[0]], x[t[1]], x[t[2]], x[q]);
+    double one = crossing_volume(x[t[0]], x[t[1]], x[t[2]], x[p]),
+           two = crossing_volume(x[t[0]], x[t[1]], x[t[2]], x[q]);
     double least = 2 * EPSILON * (fabs(x[p].x) + fabs(x[p].y) + fabs(x[p].z)) *
                    length3(crossing_cross(minus(x[t[1]], x[t[0]]), minus(x[t[2]], x[t[0]])));
     if (!((one > least && two < -least) || (one < -least && two > least))) return false;
@@ -51,7 +52,8 @@ static inline crossing_search crossing_begin(skein_world *world) {
         const uint32_t *corner = s.face_vertices;
         for (size_t f = 0; f < s.face_count; corner += s.face_sizes[f++])
             for (uint32_t k = 1; k + 1 < s.face_sizes[f]; k++, all.count++)
-                for (uint32_t j = 0; j < 3; j++) all.corner[all.count][j] = s.particle_of_vertex[corner[j ? k + j - 1 : 0]];
+                for (uint32_t j = 0; j < 3; j++)
+                    all.corner[all.count][j] = s.particle_of_vertex[corner[j ? k + j - 1 : 0]];
     }
     all.x = malloc((skein_particle_count(world) + 1) * sizeof *all.x);
     all.order = malloc((all.count + 1) * sizeof *all.order);

@@ -6,7 +6,8 @@
 
 #include <math.h>
 
-static const char *const fit_paths[3] = {"bodies.0.stretch.stiffness", "bodies.0.shear.stiffness", "bodies.0.bend.rigidity"};
+static const char *const fit_paths[3] = {"bodies.0.stretch.stiffness", "bodies.0.shear.stiffness",
+                                         "bodies.0.bend.rigidity"};
 static const double fit_truth[3] = {100, 20, 1e-4};
 
 /* A square of `side` by `side` particles that swings from its top edge: the scene and, in the folder `name`, its cache. */
@@ -33,8 +34,9 @@ static inline json_t *fit_from(const char *name, const double factors[3], const 
     snprintf(scene, sizeof scene, "%s.json", name);
     snprintf(cache, sizeof cache, "%s/sheet.pc2", name);
     snprintf(vary, sizeof vary, "%s,%s,%s", fit_paths[0], fit_paths[1], fit_paths[2]);
-    outcome o = SKEIN("fit", in_folder(scene), "--target", in_folder(cache), "--vary", vary, "--set", sets[0], "--set", sets[1],
-                      "--set", sets[2], "--json", "--no-progress", "--iterations", most_iterations, "--out", out);
+    outcome o =
+        SKEIN("fit", in_folder(scene), "--target", in_folder(cache), "--vary", vary, "--set", sets[0], "--set", sets[1],
+              "--set", sets[2], "--json", "--no-progress", "--iterations", most_iterations, "--out", out);
     if (o.status != 0 && o.status != 1) fail_msg("%d: %s", o.status, o.err);
     json_t *report = json_loads(o.out, 0, &error);
     if (!report) fail_msg("%s in %s", error.text, o.out);
@@ -47,7 +49,8 @@ static inline void assert_found(const json_t *report, double bending) {
     json_t *found = json_object_get(report, "found");
     for (int i = 0; i < 3; i++) {
         double x = json_number_value(json_object_get(found, fit_paths[i]));
-        if (!(fabs(x / fit_truth[i] - 1) < (i == 2 ? bending : 0.01))) fail_msg("%s is found as %g, not %g", fit_paths[i], x, fit_truth[i]);
+        if (!(fabs(x / fit_truth[i] - 1) < (i == 2 ? bending : 0.01)))
+            fail_msg("%s is found as %g, not %g", fit_paths[i], x, fit_truth[i]);
     }
 }
 

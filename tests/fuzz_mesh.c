@@ -10,8 +10,7 @@
 
 static void judge_mesh(const io_mesh *mesh) {
     require(mesh->vertex_count > 0 && mesh->face_count > 0);
-    for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
-        require(isfinite(mesh->positions[i]));
+    for (size_t i = 0; i < 3 * mesh->vertex_count; i++) require(isfinite(mesh->positions[i]));
     size_t corner = 0;
     for (size_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = mesh->face_sizes[f];
@@ -49,8 +48,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     for (size_t format = 0; format < sizeof formats / sizeof *formats; format++) {
         io_mesh mesh;
         skein_error error = {SKEIN_OK, "", ""};
-        skein_status status = formats[format].read(
-            (const char *)data, size, "no/folder/input", &mesh, (io_warnings){ignore, NULL}, &error);
+        skein_status status = formats[format].read((const char *)data, size, "no/folder/input", &mesh,
+                                                   (io_warnings){ignore, NULL}, &error);
         if (status == SKEIN_OK) {
             judge_mesh(&mesh);
             judge_normals(&mesh);

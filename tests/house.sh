@@ -9,6 +9,7 @@
 #   4  each public header compiles alone, as C17 and as C++17
 #   5  each file of C and GLSL opens with a comment: what it owns
 #   6  src/ asks the environment for nothing but SKEIN_...: a switch that was tried with stays in no library
+#   7  files are laid out as tools/format does it, where that is the version of clang-format that they are laid out by
 # Prints each fault as FILE:LINE: words, and fails if there is one.
 set -u
 cd "$1" || exit 2
@@ -239,6 +240,13 @@ find $(ls -d src include io render viewer app film bench solvers bindings exampl
 # ---- 6: switches ----
 grep -n 'getenv *(' $files | grep -v 'getenv("SKEIN_[A-Z]*")' |
     sed 's/^\([^:]*:[0-9]*\):.*/\1: asks the environment for something else than SKEIN_.../' >>"$faults"
+
+# ---- 7: layout ----
+if [ -e .git ] && clang-format --version 2>/dev/null | grep -q 'version 14\.'; then
+    tools/format --check 2>/dev/null | sed 's/$/:1: is not laid out as tools\/format does it/' >>"$faults"
+else
+    echo "house: no clang-format 14, so the layout was not looked at"
+fi
 
 cat "$faults"
 echo "house: $(echo "$files" | wc -l) files, $(echo "$kinds" | wc -l) kinds, $(grep -c '^[^ ]' "$faults") faults"

@@ -66,8 +66,7 @@ static inline int tear_down(void **state) {
 static inline render_image shoot_with(render_draw *with, const render_frame *frame, const render_camera *camera) {
     render_image image = {0};
     skein_error error = {0};
-    assert_int_equal(render_draw_frame(with, frame, camera, target.framebuffer, width, height, &error),
-                     SKEIN_OK);
+    assert_int_equal(render_draw_frame(with, frame, camera, target.framebuffer, width, height, &error), SKEIN_OK);
     assert_int_equal(render_target_read(&target, &image, &error), SKEIN_OK);
     return image;
 }
@@ -92,8 +91,7 @@ static inline double difference(const render_image *a, const render_image *b, in
     size_t count = 0, total = (size_t)a->width * (size_t)a->height;
     for (size_t i = 0; i < total; i++) {
         bool differs = false;
-        for (size_t k = 0; k < 3; k++)
-            differs |= abs((int)a->pixels[3 * i + k] - (int)b->pixels[3 * i + k]) > least;
+        for (size_t k = 0; k < 3; k++) differs |= abs((int)a->pixels[3 * i + k] - (int)b->pixels[3 * i + k]) > least;
         count += differs;
     }
     return (double)count / (double)total;

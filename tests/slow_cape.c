@@ -66,13 +66,14 @@ static void a_cape_comes_clean_and_stays_so(void **state) {
         add_gravity(world);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
         OK(world, skein_collider_add(world, "capsule",
-                                     SKEIN_SETTINGS(SKEIN_VEC3("from", 0, -0.6, 0), SKEIN_VEC3("to", 0, 0.6, 0), SKEIN_REAL("radius", radius),
-                                                    SKEIN_REAL("thickness", thickness)),
+                                     SKEIN_SETTINGS(SKEIN_VEC3("from", 0, -0.6, 0), SKEIN_VEC3("to", 0, 0.6, 0),
+                                                    SKEIN_REAL("radius", radius), SKEIN_REAL("thickness", thickness)),
                                      &body));
         // upright, 0.12 m deep in the middle
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8), SKEIN_VEC3("position", 0, 0, 0.13),
-                                                SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("density", 0.2)),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8),
+                                                SKEIN_VEC3("position", 0, 0, 0.13), SKEIN_VEC3("rotation", 90, 0, 0),
+                                                SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("density", 0.2)),
                                  NULL));
         assert_int_equal(skein_particle_count(world), ROWS * COLUMNS);
         uint32_t pins[2] = {0, COLUMNS - 1};
@@ -102,7 +103,8 @@ static void a_cape_comes_clean_and_stays_so(void **state) {
             }
             for (uint32_t p = 0; p < ROWS * COLUMNS; p++) fastest = fmax(fastest, length3(velocity_of(world, p)));
         }
-        print_message("%s: least gap %.3g mm of %g, fastest %.3g m/s\n", methods[m], 1e3 * least, 1e3 * thickness, fastest);
+        print_message("%s: least gap %.3g mm of %g, fastest %.3g m/s\n", methods[m], 1e3 * least, 1e3 * thickness,
+                      fastest);
         assert_true(fastest < 40);
         skein_world_destroy(world);
     }
@@ -117,7 +119,8 @@ static char *write_keys(void) {
         stand s = stand_at(f);
         double side = 180 * (f / 200 % 2), yaw = s.yaw * 180 / PI + side + 150 * sin(f / 90.0) * (f > 60);
         bool jumps = f % 200 == 0 && f; // just after the key before it
-        at += sprintf(at, "%s%.6f %.6f 0 %.6f 0 %.6f 0", f ? ", " : "", jumps ? (f - EACH) * dt + 1e-4 : f * dt, s.place[0], s.place[2], yaw);
+        at += sprintf(at, "%s%.6f %.6f 0 %.6f 0 %.6f 0", f ? ", " : "", jumps ? (f - EACH) * dt + 1e-4 : f * dt,
+                      s.place[0], s.place[2], yaw);
     }
     return text;
 }
@@ -133,17 +136,20 @@ static void a_motion_leads_both(void **state) {
         add_gravity(world);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
         OK(world, skein_collider_add(world, "capsule",
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_VEC3("from", 0, -0.6, 0), SKEIN_VEC3("to", 0, 0.6, 0),
-                                                    SKEIN_REAL("radius", radius), SKEIN_REAL("thickness", thickness)),
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_VEC3("from", 0, -0.6, 0),
+                                                    SKEIN_VEC3("to", 0, 0.6, 0), SKEIN_REAL("radius", radius),
+                                                    SKEIN_REAL("thickness", thickness)),
                                      &body));
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8),
-                                                SKEIN_VEC3("position", 0, 0, 0.13), SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS),
+                                                SKEIN_PAIR("size", 1.0, 0.8), SKEIN_VEC3("position", 0, 0, 0.13),
+                                                SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
                                                 SKEIN_REAL("density", 0.2)),
                                  NULL));
         OK(world, skein_motion_add(world, "keys", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "wearer"),
-                                                  SKEIN_REAL("smooth", 0), SKEIN_REAL("inertia", shares[i]), SKEIN_REAL("jump", 2)),
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"),
+                                                  SKEIN_TEXT("colliders", "wearer"), SKEIN_REAL("smooth", 0),
+                                                  SKEIN_REAL("inertia", shares[i]), SKEIN_REAL("jump", 2)),
                                    NULL));
         double least = 1, fastest = 0, farthest = 0;
         for (int f = 0; f < FRAMES; f++) {
@@ -158,11 +164,12 @@ static void a_motion_leads_both(void **state) {
             least = fmin(least, gap);
             for (uint32_t p = 0; p < ROWS * COLUMNS; p++) {
                 fastest = fmax(fastest, length3(velocity_of(world, p)));
-                farthest = fmax(farthest, length3(minus(position_of(world, p), (vec3){pose.position[0], pose.position[1], pose.position[2]})));
+                farthest = fmax(farthest, length3(minus(position_of(world, p),
+                                                        (vec3){pose.position[0], pose.position[1], pose.position[2]})));
             }
         }
-        print_message("inertia %g: least gap %.3g mm of %g, fastest %.3g m/s, at most %.3g m away\n", shares[i], 1e3 * least, 1e3 * thickness,
-                      fastest, farthest);
+        print_message("inertia %g: least gap %.3g mm of %g, fastest %.3g m/s, at most %.3g m away\n", shares[i],
+                      1e3 * least, 1e3 * thickness, fastest, farthest);
         assert_true(fastest < 80);
         assert_true(farthest < 2); // nobody is left behind
         skein_world_destroy(world);
@@ -183,7 +190,8 @@ static double least_off(const skein_world *world, skein_handle body) {
             size_t j = k == 1 ? i + 1 : k == 2 ? i + COLUMNS : i;
             if (j >= ROWS * COLUMNS || (k == 1 && j % COLUMNS == 0)) continue;
             vec3 q = position_of(world, j);
-            points[count][0] = (p.x + q.x) / 2, points[count][1] = (p.y + q.y) / 2, points[count++][2] = (p.z + q.z) / 2;
+            points[count][0] = (p.x + q.x) / 2, points[count][1] = (p.y + q.y) / 2,
+            points[count++][2] = (p.z + q.z) / 2;
         }
     }
     OK(world, skein_collider_probe(world, body, count, points[0], off, NULL));
@@ -204,17 +212,20 @@ static void a_mesh_wears_it(void **state) {
         for (size_t v = 0; v < s->mesh.vertex_count; v++) s->position[v][0] *= 1.1, s->position[v][1] *= 3.4;
         add_gravity(world);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
-        OK(world, skein_collider_add_mesh(world, kinds[i], &s->mesh,
-                                          SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_REAL("thickness", thickness)), &body));
+        OK(world, skein_collider_add_mesh(
+                      world, kinds[i], &s->mesh,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", "wearer"), SKEIN_REAL("thickness", thickness)), &body));
         free(s);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 1.0, 0.8),
-                                                SKEIN_VEC3("position", 0, 0, 0.13), SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS),
+                                                SKEIN_PAIR("size", 1.0, 0.8), SKEIN_VEC3("position", 0, 0, 0.13),
+                                                SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top corners"),
                                                 SKEIN_REAL("density", 0.2)),
                                  NULL));
         OK(world, skein_motion_add(world, "keys", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "wearer"),
-                                                  SKEIN_REAL("smooth", 0), SKEIN_REAL("inertia", 0.5), SKEIN_REAL("jump", 2)),
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("on", "cape"),
+                                                  SKEIN_TEXT("colliders", "wearer"), SKEIN_REAL("smooth", 0),
+                                                  SKEIN_REAL("inertia", 0.5), SKEIN_REAL("jump", 2)),
                                    NULL));
         double least = 1, deepest = least_off(world, body);
         assert_true(deepest < -0.1);
@@ -226,7 +237,8 @@ static void a_mesh_wears_it(void **state) {
             assert_true(off > 0);
             least = fmin(least, off);
         }
-        print_message("%s: from %.3g m inside; least gap %.3g mm of %g\n", kinds[i], -deepest, 1e3 * least, 1e3 * thickness);
+        print_message("%s: from %.3g m inside; least gap %.3g mm of %g\n", kinds[i], -deepest, 1e3 * least,
+                      1e3 * thickness);
         assert_int_equal(statistics_of(world).nonfinite, 0);
         skein_world_destroy(world);
     }
@@ -234,7 +246,7 @@ static void a_mesh_wears_it(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so), cmocka_unit_test(a_motion_leads_both),
-                                       cmocka_unit_test(a_mesh_wears_it)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(a_cape_comes_clean_and_stays_so),
+                                       cmocka_unit_test(a_motion_leads_both), cmocka_unit_test(a_mesh_wears_it)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

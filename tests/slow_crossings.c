@@ -31,7 +31,8 @@ static skein_world *run_clean(const char *path, int frames) {
     for (int f = 1; f <= frames; f++) {
         steps(world, 1, 1.0 / 60);
         size_t ours = crossings_now(&all, world), theirs = statistics_of(world).crossings;
-        if (ours || theirs) fail_msg("%s, frame %d: %zu crossings by our count, %zu by the library's", path, f, ours, theirs);
+        if (ours || theirs)
+            fail_msg("%s, frame %d: %zu crossings by our count, %zu by the library's", path, f, ours, theirs);
     }
     crossing_free(&all);
     return world;
@@ -119,10 +120,8 @@ static void ribbons_lie_on_each_other(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(four_turns_and_back),
-        cmocka_unit_test(few_substeps_hold_it_too),
-        cmocka_unit_test(a_reef_knot_holds),
-        cmocka_unit_test(a_cloth_comes_through_a_funnel),
+        cmocka_unit_test(four_turns_and_back),       cmocka_unit_test(few_substeps_hold_it_too),
+        cmocka_unit_test(a_reef_knot_holds),         cmocka_unit_test(a_cloth_comes_through_a_funnel),
         cmocka_unit_test(ribbons_lie_on_each_other),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

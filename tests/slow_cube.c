@@ -205,10 +205,8 @@ static void masses_let_a_cube_hop(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(cubes_come_to_rest),
-        cmocka_unit_test(a_jelly_wobbles_and_keeps_its_volume),
-        cmocka_unit_test(a_cube_slides_down_the_slope),
-        cmocka_unit_test(a_cube_slides_off_the_ball),
+        cmocka_unit_test(cubes_come_to_rest),           cmocka_unit_test(a_jelly_wobbles_and_keeps_its_volume),
+        cmocka_unit_test(a_cube_slides_down_the_slope), cmocka_unit_test(a_cube_slides_off_the_ball),
         cmocka_unit_test(masses_let_a_cube_hop),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -73,7 +73,8 @@ static void it_stops_there(void **state) {
             const double y = position_of(world, i).y;
             highest = fmax(highest, y), lowest = fmin(lowest, y);
         }
-        if (!(highest > 0 && highest < 2 && lowest > -1.5) && !(slides && lowest < -3 && lowest > -5)) fail_msg("fall %zu: from %g to %g m", k, lowest, highest);
+        if (!(highest > 0 && highest < 2 && lowest > -1.5) && !(slides && lowest < -3 && lowest > -5))
+            fail_msg("fall %zu: from %g to %g m", k, lowest, highest);
         crossing_free(&all);
         skein_world_destroy(world);
     }

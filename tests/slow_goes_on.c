@@ -17,17 +17,19 @@ static void add_some_sheet(skein_world *world, int number, bool rough) {
     const int rows = (int)some(12, 30), columns = (int)some(12, 30), held = (int)some(0, COUNT(pins));
     const double cell = some(0.015, 0.03), x = some(-0.1, 0.1), y = 0.3 * number + some(0, 0.2), z = some(-0.1, 0.1);
     const double pitch = some(-100, 100), yaw = some(0, 90), roll = some(-20, 20), down = held < 2 ? some(-3, 0) : 0;
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", rows, columns),
-                                            SKEIN_PAIR("size", cell * rows, cell * columns), SKEIN_TEXT("pins", pins[held]),
-                                            SKEIN_VEC3("position", x, y, z), SKEIN_VEC3("rotation", pitch, yaw, roll),
-                                            SKEIN_VEC3("velocity", 0, down, 0)),
-                             NULL));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", rows, columns),
+                                     SKEIN_PAIR("size", cell * rows, cell * columns), SKEIN_TEXT("pins", pins[held]),
+                                     SKEIN_VEC3("position", x, y, z), SKEIN_VEC3("rotation", pitch, yaw, roll),
+                                     SKEIN_VEC3("velocity", 0, down, 0)),
+                      NULL));
     const double most = rough ? 0.35 : 0.2, time = some(rough ? 0.1 : 0.2, 0.5);
     const double to[] = {some(-most, most), some(-most, most + 0.1), some(-most, most)};
     snprintf(keys, sizeof keys, "0 0 0 0, %g %g %g %g, %g 0 0 0", time, to[0], to[1], to[2], 2 * time);
     if (held >= 2)
-        OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("on", name), SKEIN_TEXT("keys", keys)), NULL));
+        OK(world, skein_motion_add(world, "keys", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("on", name), SKEIN_TEXT("keys", keys)), NULL));
 }
 
 static skein_world *world_of(int number, bool rough, int threads) {
@@ -41,11 +43,13 @@ static skein_world *world_of(int number, bool rough, int threads) {
     OK(world, skein_method_set(world, methods[method], SKEIN_SETTINGS(SKEIN_REAL("substeps", substeps))));
     add_gravity(world);
     const double thickness = some(0.003, 0.008), friction = some(0, 0.6);
-    OK(world, skein_force_add(world, "contact",
-                              SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness), SKEIN_REAL("friction", friction)), NULL));
+    OK(world,
+       skein_force_add(world, "contact",
+                       SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness), SKEIN_REAL("friction", friction)), NULL));
     for (int i = 0; i < sheets; i++) add_some_sheet(world, i, rough);
     if (some(0, 1) < 0.5)
-        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.5), SKEIN_REAL("friction", 0.5)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("offset", -0.5), SKEIN_REAL("friction", 0.5)), NULL));
     return world;
 }
 
@@ -78,7 +82,8 @@ static size_t go_on(int number, bool rough, double *stretch) {
         for (int g = f; g < FRAMES; g++) {
             steps(other, 1, 1.0 / 60);
             if (skein_world_hash(other) != hash[g + 1])
-                fail_msg("world %d, stretched by up to %g, goes on otherwise from frame %d in frame %d", number, *stretch, f, g + 1);
+                fail_msg("world %d, stretched by up to %g, goes on otherwise from frame %d in frame %d", number,
+                         *stretch, f, g + 1);
         }
         skein_world_destroy(other);
     }

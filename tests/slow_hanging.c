@@ -9,7 +9,8 @@ static skein_world *hanging(const char *method, int substeps, int side, double s
                       SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
                                      SKEIN_REAL("density", 0.2), SKEIN_TEXT("pins", "top corners"),
                                      SKEIN_REAL("stretch.stiffness", stiffness), SKEIN_REAL("stretch.tether", tether),
-                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100)),
+                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_TEXT("bend.by", "springs"),
+                                     SKEIN_REAL("bend.stiffness", 100)),
                       NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1.5)), NULL));
@@ -42,8 +43,8 @@ static void a_hanging_cloth_comes_to_rest_symmetric(void **state) {
         {"symplectic_euler", 60, 17, 1000, 0.02, 5e-3},
     };
     for (size_t w = 0; w < COUNT(ways); w++) {
-        skein_world *world = hanging(ways[w].method, ways[w].substeps, (int)ways[w].side, ways[w].stiffness,
-                                     ways[w].tether);
+        skein_world *world =
+            hanging(ways[w].method, ways[w].substeps, (int)ways[w].side, ways[w].stiffness, ways[w].tether);
         static double before[3 * 33 * 33], after[3 * 33 * 33];
         size_t particles = ways[w].side * ways[w].side;
         double most = 0;

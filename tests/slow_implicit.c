@@ -47,10 +47,13 @@ static void lands(int substeps, bool meets, double speed) {
     skein_world *world = new_world("backward_euler", substeps);
     add_gravity(world);
     if (meets) OK(world, skein_force_add(world, "contact", NULL, NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_VEC3("motion.velocity", speed, 0, 0)), NULL));
+    OK(world, skein_collider_add(
+                  world, "plane",
+                  SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_VEC3("motion.velocity", speed, 0, 0)), NULL));
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_PAIR("size", 0.5, 0.5),
-                                            SKEIN_VEC3("position", 0, 0.5, 0), SKEIN_VEC3("rotation", 70, 20, 0), SKEIN_VEC3("velocity", speed, 0, 0)),
+                                            SKEIN_VEC3("position", 0, 0.5, 0), SKEIN_VEC3("rotation", 70, 20, 0),
+                                            SKEIN_VEC3("velocity", speed, 0, 0)),
                              NULL));
     const double along = statistics_of(world).kinetic_energy; // all of it goes on with the ground
     double most = 0;
@@ -59,8 +62,8 @@ static void lands(int substeps, bool meets, double speed) {
         most = fmax(most, statistics_of(world).kinetic_energy - along);
     }
     skein_statistics end = statistics_of(world);
-    printf("%d substeps, contact %d, %g m/s: at most %.3g J, in the end %.2g J, stretch %.2g\n", substeps, meets, speed, most,
-           end.kinetic_energy - along, end.max_stretch);
+    printf("%d substeps, contact %d, %g m/s: at most %.3g J, in the end %.2g J, stretch %.2g\n", substeps, meets, speed,
+           most, end.kinetic_energy - along, end.max_stretch);
     assert_under(most, 0.27);
     assert_under(fabs(end.kinetic_energy - along), 5e-3);
     assert_under(end.max_stretch, 0.15);
@@ -98,8 +101,9 @@ static void add_tube(skein_world *world) {
     for (uint32_t c = 0; c < AROUND; c++) *next++ = AROUND - 1 - c;
     for (uint32_t c = 0; c < AROUND; c++) *next++ = SIDES + c;
     const skein_mesh mesh = {at, AROUND * RINGS, size, SIDES + 2, corner, sizeof corner / sizeof *corner};
-    OK(world, skein_body_add(world, "cloth", &mesh,
-                             SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.15, 0), SKEIN_VEC3("rotation", 0, 30, 65)), NULL));
+    OK(world,
+       skein_body_add(world, "cloth", &mesh,
+                      SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.15, 0), SKEIN_VEC3("rotation", 0, 30, 65)), NULL));
 }
 
 static uint64_t crumples(const char *isa, int threads) {
@@ -120,8 +124,8 @@ static uint64_t crumples(const char *isa, int threads) {
         most = fmax(most, statistics_of(world).elastic_energy);
     }
     skein_statistics end = statistics_of(world);
-    printf("tube, %s, %d threads: at most %.2g J elastic, in the end %.2g J, %.2g J kinetic, stretch %.2g\n", isa, threads, most,
-           end.elastic_energy, end.kinetic_energy, end.max_stretch);
+    printf("tube, %s, %d threads: at most %.2g J elastic, in the end %.2g J, %.2g J kinetic, stretch %.2g\n", isa,
+           threads, most, end.elastic_energy, end.kinetic_energy, end.max_stretch);
     assert_under(most, 0.05);
     assert_under(end.kinetic_energy, 1e-4);
     assert_under(end.max_stretch, 0.03);
@@ -139,7 +143,7 @@ static void a_tube_that_crumples_stays_in_one_piece(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(a_stiff_cube_stays_for_ten_thousand_steps),
-                                 cmocka_unit_test(a_sheet_that_folds_on_rough_ground_stays_in_one_piece),
-                                 cmocka_unit_test(a_tube_that_crumples_stays_in_one_piece)};
+                                       cmocka_unit_test(a_sheet_that_folds_on_rough_ground_stays_in_one_piece),
+                                       cmocka_unit_test(a_tube_that_crumples_stays_in_one_piece)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

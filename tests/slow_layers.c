@@ -9,16 +9,20 @@ static void ten_layers_stay_apart(void **state) {
     skein_world *world = new_world("xpbd", 10);
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
-    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.006), SKEIN_REAL("friction", 0.3)), NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004), SKEIN_REAL("friction", 0.5)), NULL));
+    OK(world, skein_force_add(world, "contact",
+                              SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.006), SKEIN_REAL("friction", 0.3)), NULL));
+    OK(world, skein_collider_add(world, "plane",
+                                 SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004), SKEIN_REAL("friction", 0.5)), NULL));
     OK(world, skein_collider_add(world, "sphere",
                                  SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.3, 0), SKEIN_REAL("radius", 0.25),
-                                                SKEIN_REAL("thickness", 0.006), SKEIN_REAL("friction", 0.4)), NULL));
+                                                SKEIN_REAL("thickness", 0.006), SKEIN_REAL("friction", 0.4)),
+                                 NULL));
     for (int i = 0; i < LAYERS; i++)
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_PAIR("size", 1, 1),
                                                 SKEIN_VEC3("position", 0.013 * i, 0.6 + 0.03 * i, -0.007 * i),
-                                                SKEIN_VEC3("rotation", 0, 9.0 * i, 0)), NULL));
+                                                SKEIN_VEC3("rotation", 0, 9.0 * i, 0)),
+                                 NULL));
     crossing_search all = crossing_begin(world);
     for (int f = 1; f <= FRAMES; f++) {
         steps(world, 1, 1.0 / 60);

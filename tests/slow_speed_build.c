@@ -50,14 +50,16 @@ static void a_large_cloth_is_built_in_no_time(void **state) {
         assert_non_null(world);
         double start = seconds_now();
         if (!way)
-            OK(world,
-               skein_body_add(world, "cloth", NULL,
-                              SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", "corners")), NULL));
-        else
-            OK(world, skein_body_add(world, "cloth", &mesh,
-                                     SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("weld", way == 2 ? 1e-4 : 0),
-                                                    SKEIN_TEXT("pins", "0 255 65280 65535")),
+            OK(world, skein_body_add(world, "cloth", NULL,
+                                     SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_PAIR("grid", SIDE, SIDE),
+                                                    SKEIN_TEXT("pins", "corners")),
                                      NULL));
+        else
+            OK(world,
+               skein_body_add(world, "cloth", &mesh,
+                              SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("weld", way == 2 ? 1e-4 : 0),
+                                             SKEIN_TEXT("pins", "0 255 65280 65535")),
+                              NULL));
         add_gravity(world);
         steps(world, 1, 1.0 / 90);
         double taken = seconds_now() - start;

@@ -4,12 +4,12 @@
 static skein_world *turntable(const char *method, int substeps, int side, double stiffness, double friction,
                               double start) {
     skein_world *world = new_world(method, substeps);
-    OK(world,
-       skein_body_add(world, "cloth", NULL,
-                      SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.12, 0),
-                                     SKEIN_REAL("density", 0.25), SKEIN_REAL("stretch.stiffness", stiffness),
-                                     SKEIN_REAL("shear.stiffness", stiffness / 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20)),
-                      NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.12, 0),
+                                            SKEIN_REAL("density", 0.25), SKEIN_REAL("stretch.stiffness", stiffness),
+                                            SKEIN_REAL("shear.stiffness", stiffness / 10),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20)),
+                             NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.6)), NULL));

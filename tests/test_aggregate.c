@@ -46,7 +46,8 @@ static void large_pinned_meshes_have_them(void **state) {
         world = new_world("xpbd", 5);
         if (k == 0) add_irregular(world, 20, SKEIN_SETTINGS(SKEIN_TEXT("pins", corners)));
         if (k == 1) add_irregular(world, 50, NULL);
-        if (k == 2) add_irregular(world, 50, SKEIN_SETTINGS(SKEIN_TEXT("pins", corners), SKEIN_REAL("stretch.tear", 0.5)));
+        if (k == 2)
+            add_irregular(world, 50, SKEIN_SETTINGS(SKEIN_TEXT("pins", corners), SKEIN_REAL("stretch.tear", 0.5)));
         assert_int_equal(count_aggregates(world), 0);
         skein_world_destroy(world);
     }
@@ -54,7 +55,8 @@ static void large_pinned_meshes_have_them(void **state) {
 
 static size_t count_spans(const skein_world *world) {
     size_t count = 0;
-    for (size_t i = 0; i < world->rules.batches.count; i++) count += !strcmp(world->rules.batches.data[i]->label, "span");
+    for (size_t i = 0; i < world->rules.batches.count; i++)
+        count += !strcmp(world->rules.batches.data[i]->label, "span");
     return count;
 }
 
@@ -103,7 +105,8 @@ static double time_of_swing(uint32_t side, int substeps) {
 static void a_swing_keeps_its_time(void **state) {
     (void)state;
     ONLY_IN_PLAIN_BUILDS();
-    const double few = time_of_swing(64, 10), many = time_of_swing(64, 60), small = time_of_swing(30, 60); // which has spans alone
+    const double few = time_of_swing(64, 10), many = time_of_swing(64, 60),
+                 small = time_of_swing(30, 60); // which has spans alone
     assert_true(many > 1 && many < 2);
     assert_near(few, many, 0.02 * many);
     assert_near(small, many, 0.02 * many);
@@ -178,8 +181,7 @@ static void the_bits_are_the_same(void **state) {
     skein_world *fresh = swinging(48, 4, 1, 0.3);
     steps(world, STEPS, dt);
     steps(fresh, STEPS, dt);
-    for (size_t i = 0; i < 48 * 48; i++)
-        assert_true(length3(minus(position_of(world, i), position_of(fresh, i))) == 0);
+    for (size_t i = 0; i < 48 * 48; i++) assert_true(length3(minus(position_of(world, i), position_of(fresh, i))) == 0);
     skein_world_destroy(world);
     skein_world_destroy(fresh);
 }
@@ -210,9 +212,10 @@ static void a_cut_takes_them_away(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(large_pinned_meshes_have_them), cmocka_unit_test(a_mesh_that_swings_is_firm), cmocka_unit_test(what_is_dropped_is_firm),
-        cmocka_unit_test(a_swing_keeps_its_time),        cmocka_unit_test(nothing_gains_momentum),
-        cmocka_unit_test(the_bits_are_the_same),         cmocka_unit_test(a_cut_takes_them_away),
+        cmocka_unit_test(large_pinned_meshes_have_them), cmocka_unit_test(a_mesh_that_swings_is_firm),
+        cmocka_unit_test(what_is_dropped_is_firm),       cmocka_unit_test(a_swing_keeps_its_time),
+        cmocka_unit_test(nothing_gains_momentum),        cmocka_unit_test(the_bits_are_the_same),
+        cmocka_unit_test(a_cut_takes_them_away),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -15,17 +15,19 @@ static scene make_scene(const skein_world_desc *desc) {
     s.world = skein_world_create(desc, &error);
     assert_non_null(s.world);
     OK(s.world, skein_body_add(s.world, "cloth", NULL,
-                               SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 7, 7), SKEIN_VEC3("position", 0, 1, 0),
-                                              SKEIN_TEXT("pins", "top corners")),
+                               SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 7, 7),
+                                              SKEIN_VEC3("position", 0, 1, 0), SKEIN_TEXT("pins", "top corners")),
                                &s.cloth));
     add_moving(s.world, 0.5, 0, 1.2, 0, 0.1, 0, 0);
     add_particle(s.world, 0.5, 0.2, 1.3, 0);
-    OK(s.world, skein_constraint_add(s.world, "distance", (const uint32_t[]){49, 50}, 1,
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "rod"), SKEIN_REAL("stiffness", 300)), &s.spring));
+    OK(s.world,
+       skein_constraint_add(s.world, "distance", (const uint32_t[]){49, 50}, 1,
+                            SKEIN_SETTINGS(SKEIN_TEXT("name", "rod"), SKEIN_REAL("stiffness", 300)), &s.spring));
     OK(s.world, skein_force_add(s.world, "gravity", NULL, &s.gravity));
     OK(s.world, skein_force_add(s.world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), &s.drag));
     OK(s.world, skein_collider_add(s.world, "sphere",
-                                   SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_VEC3("centre", 0, 0.6, 0), SKEIN_REAL("radius", 0.3)),
+                                   SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_VEC3("centre", 0, 0.6, 0),
+                                                  SKEIN_REAL("radius", 0.3)),
                                    &s.ball));
     return s;
 }
@@ -57,7 +59,8 @@ static void handles_go_stale(void **state) {
     assert_true(skein_handle_valid(s.world, again) && !skein_handle_valid(s.world, s.gravity));
     assert_false(skein_handle_equal(again, s.gravity));
     // handles that never were, of no world and of this one
-    static const skein_handle wild[] = {{0, 0, 0}, {UINT32_MAX, 0, 0}, {UINT32_MAX, 1, 0}, {77, 1, 0}, {0, 2, 0}, {0, 3, 0}};
+    static const skein_handle wild[] = {{0, 0, 0},  {UINT32_MAX, 0, 0}, {UINT32_MAX, 1, 0},
+                                        {77, 1, 0}, {0, 2, 0},          {0, 3, 0}};
     for (size_t i = 0; i < 2 * COUNT(wild); i++) {
         skein_handle handle = wild[i / 2];
         if (i % 2) handle.world = s.cloth.world;
@@ -71,7 +74,8 @@ static void handles_go_stale(void **state) {
 static void handles_know_their_world(void **state) {
     (void)state;
     scene a = make_scene(NULL), b = make_scene(NULL);
-    const skein_handle foreign[] = {b.cloth, b.gravity, b.drag, b.ball, b.spring, skein_object_at(b.world, SKEIN_METHOD, 0)};
+    const skein_handle foreign[] = {b.cloth, b.gravity, b.drag,
+                                    b.ball,  b.spring,  skein_object_at(b.world, SKEIN_METHOD, 0)};
     for (size_t i = 0; i < COUNT(foreign); i++) {
         skein_value value;
         assert_true(skein_handle_valid(b.world, foreign[i]) || i == COUNT(foreign) - 1);
@@ -80,7 +84,8 @@ static void handles_know_their_world(void **state) {
         assert_null(skein_object_kind(a.world, foreign[i]));
         assert_false(skein_field_is_live(a.world, foreign[i], "enabled"));
         FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_remove(a.world, foreign[i]));
-        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_set(a.world, foreign[i], "enabled", skein_number(0)));
+        FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world",
+              skein_set(a.world, foreign[i], "enabled", skein_number(0)));
         FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_get(a.world, foreign[i], "enabled", &value));
         FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_user_set(a.world, foreign[i], &value));
         assert_null(skein_user(a.world, foreign[i]));
@@ -90,7 +95,8 @@ static void handles_know_their_world(void **state) {
     double xyz[3] = {0};
     size_t count;
     FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_body_surface(a.world, b.cloth, &surface));
-    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_body_elements(a.world, b.cloth, SKEIN_EDGES, NULL, 0, &count));
+    FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world",
+          skein_body_elements(a.world, b.cloth, SKEIN_EDGES, NULL, 0, &count));
     FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_collider_pose(a.world, b.ball, &pose));
     FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_collider_probe(a.world, b.ball, 1, xyz, xyz, NULL));
     FAILS(a.world, SKEIN_ERROR_HANDLE, "of another world", skein_force_probe(a.world, b.drag, 1, xyz, xyz));
@@ -170,7 +176,8 @@ static void handles_have_a_category(void **state) {
     FAILS(s.world, SKEIN_ERROR_HANDLE, "no such body", skein_body_surface(s.world, s.gravity, &surface));
     FAILS(s.world, SKEIN_ERROR_HANDLE, "no such collider", skein_collider_pose(s.world, s.cloth, &pose));
     OK(s.world, skein_body_surface(s.world, s.cloth, &surface));
-    assert_true(surface.grid_rows == 7 && surface.grid_columns == 7 && surface.first_particle == 0 && surface.particle_count == 49);
+    assert_true(surface.grid_rows == 7 && surface.grid_columns == 7 && surface.first_particle == 0 &&
+                surface.particle_count == 49);
     OK(s.world, skein_collider_pose(s.world, s.ball, &pose));
     assert_near(pose.position[1], 0.6, 1e-6);
     // the method stays
@@ -240,13 +247,16 @@ static void wrong_names_suggest_the_nearest(void **state) {
     FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'sphere'?", skein_collider_add(s.world, "spere", NULL, NULL));
     FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'cloth'?", skein_body_add(s.world, "clot", NULL, NULL, NULL));
     FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'xpbd'?", skein_method_set(s.world, "xbpd", NULL));
-    FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'substeps'?", skein_method_set(s.world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substep", 3))));
+    FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'substeps'?",
+          skein_method_set(s.world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substep", 3))));
     FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'gravity'?", skein_force_add(s.world, "gravitty", NULL, NULL));
-    FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'distance'?", skein_constraint_add(s.world, "distanse", NULL, 0, NULL, NULL));
+    FAILS(s.world, SKEIN_ERROR_NAME, "did you mean 'distance'?",
+          skein_constraint_add(s.world, "distanse", NULL, 0, NULL, NULL));
     FAILS(s.world, SKEIN_ERROR_NAME, "expected bodies", skein_set_path(s.world, "body.0.density", skein_number(1)));
     FAILS(s.world, SKEIN_ERROR_NAME, "expected bodies", skein_set_path(s.world, "", skein_number(1)));
     FAILS(s.world, SKEIN_ERROR_NAME, "expected bodies", skein_set_path(s.world, "forces.0", skein_number(1)));
-    FAILS(s.world, SKEIN_ERROR_NAME, "no 2 among the 2 forces", skein_set_path(s.world, "forces.2.rate", skein_number(1)));
+    FAILS(s.world, SKEIN_ERROR_NAME, "no 2 among the 2 forces",
+          skein_set_path(s.world, "forces.2.rate", skein_number(1)));
     FAILS(s.world, SKEIN_ERROR_NAME, "has no field ''", skein_set_path(s.world, "forces.0.", skein_number(1)));
     // far from everything: no suggestion
     assert_int_equal(skein_set(s.world, s.ball, "zzzzzzzzzz", skein_number(1)), SKEIN_ERROR_NAME);
@@ -292,7 +302,8 @@ static void values_out_of_range_are_refused(void **state) {
             for (size_t f = 0; f < kind->field_count; f++) {
                 const skein_field *field = &kind->fields[f];
                 static const int numbers[] = {1, 1, 2, 3, 1, 2, 3, 1, 0};
-                skein_value value = {numbers[field->type], {field->initial[0], field->initial[1], field->initial[2]},
+                skein_value value = {numbers[field->type],
+                                     {field->initial[0], field->initial[1], field->initial[2]},
                                      field->text ? field->text : ""};
                 assert_int_equal(skein_field_check(field, &value, &error), SKEIN_OK);
                 assert_ptr_equal(skein_field_find(kind, field->name, &error), field);
@@ -318,7 +329,8 @@ static void choices_are_whole_and_within_the_list(void **state) {
                     skein_value value = skein_number(place);
                     bool good = place >= 0 && place < count && place == floor(place);
                     skein_status status = skein_field_check(field, &value, &error);
-                    if ((status == SKEIN_OK) != good) fail_msg("%s: place %g of %s", field->name, place, field->choices);
+                    if ((status == SKEIN_OK) != good)
+                        fail_msg("%s: place %g of %s", field->name, place, field->choices);
                     if (!good) assert_non_null(strstr(error.message, field->choices));
                 }
                 skein_value value = skein_text("no such word");
@@ -345,13 +357,15 @@ static void what_shaped_a_body_cannot_change(void **state) {
         after = skein_world_hash(s.world);
         assert_true(before != after);
     }
-    static const char *const shaping[] = {"mesh", "pins", "grid", "size", "position", "rotation", "scale", "velocity", "density", "weld",
-                                           "bend.by", "bend.stiffness", "bend.damping"}; // by angle
+    static const char *const shaping[] = {"mesh",     "pins",           "grid",        "size",    "position",
+                                          "rotation", "scale",          "velocity",    "density", "weld",
+                                          "bend.by",  "bend.stiffness", "bend.damping"}; // by angle
     for (size_t i = 0; i < COUNT(shaping); i++) {
         const skein_field *field = skein_field_find(skein_object_kind(s.world, s.cloth), shaping[i], NULL);
         skein_value value;
         OK(s.world, skein_get(s.world, s.cloth, field->name, &value));
-        FAILS(s.world, SKEIN_ERROR_VALUE, "shapes what is already built", skein_set(s.world, s.cloth, shaping[i], value));
+        FAILS(s.world, SKEIN_ERROR_VALUE, "shapes what is already built",
+              skein_set(s.world, s.cloth, shaping[i], value));
     }
     // its name can
     OK(s.world, skein_set(s.world, s.cloth, "name", skein_text("curtain")));
@@ -369,8 +383,9 @@ static void live_fields_are_as_if_built_so(void **state) {
         skein_handle body;
         OK(worlds[w], skein_body_add(worlds[w], "cloth", NULL,
                                      SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_TEXT("pins", "top corners"),
-                                                    SKEIN_REAL("stretch.stiffness", w ? 100 : 2e4), SKEIN_TEXT("bend.by", "springs"),
-                                                    SKEIN_REAL("bend.stiffness", 20), SKEIN_REAL("bend.damping", w ? 0.5 : 0),
+                                                    SKEIN_REAL("stretch.stiffness", w ? 100 : 2e4),
+                                                    SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20),
+                                                    SKEIN_REAL("bend.damping", w ? 0.5 : 0),
                                                     SKEIN_REAL("stretch.limit", w ? 0.02 : 1)),
                                      &body));
         if (w) continue;
@@ -396,25 +411,53 @@ static void disabled_is_as_if_absent(void **state) {
                 skein_world *world = new_world(method_names[m], 8);
                 // the cloth is there in any case, but for its own turn below
                 skein_handle handle = {0, 0, 0}, cloth;
-                OK(world, skein_body_add(world, "cloth", NULL,
-                                         SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_VEC3("position", 0, 0.5, 0),
-                                                        SKEIN_VEC3("velocity", 1, -3, 0.5), SKEIN_REAL("stretch.stiffness", 20),
-                                                        SKEIN_REAL("shear.stiffness", 5), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1),
-                                                        SKEIN_REAL("stretch.limit", 0.02), SKEIN_TEXT("pins", "0")),
-                                         &cloth));
+                OK(world,
+                   skein_body_add(world, "cloth", NULL,
+                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_VEC3("position", 0, 0.5, 0),
+                                                 SKEIN_VEC3("velocity", 1, -3, 0.5),
+                                                 SKEIN_REAL("stretch.stiffness", 20), SKEIN_REAL("shear.stiffness", 5),
+                                                 SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1),
+                                                 SKEIN_REAL("stretch.limit", 0.02), SKEIN_TEXT("pins", "0")),
+                                  &cloth));
                 uint64_t seed = 31;
                 for (int i = 0; i < 6; i++)
-                    add_particle(world, 0.1, random_between(&seed, -0.1, 0.1), random_between(&seed, 0.5, 0.6), random_between(&seed, -0.1, 0.1));
+                    add_particle(world, 0.1, random_between(&seed, -0.1, 0.1), random_between(&seed, 0.5, 0.6),
+                                 random_between(&seed, -0.1, 0.1));
                 if (way != WITHOUT || kind == 8) switch (kind) {
                     case 0: OK(world, skein_force_add(world, "gravity", NULL, &handle)); break;
-                    case 1: OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1e-3, 0, 0)), &handle)); break;
-                    case 2: OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 0, 1, 3)), &handle)); break;
-                    case 3: OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.4)), &handle)); break;
-                    case 4: OK(world, skein_force_add(world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 0.01)), &handle)); break;
-                    case 5: OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", 0.45), SKEIN_REAL("restitution", 0.3)), &handle)); break;
-                    case 6: OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.2, 0), SKEIN_REAL("radius", 0.25), SKEIN_REAL("restitution", 0.3)), &handle)); break;
+                    case 1:
+                        OK(world,
+                           skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1e-3, 0, 0)), &handle));
+                        break;
+                    case 2:
+                        OK(world, skein_force_add(world, "surface_wind",
+                                                  SKEIN_SETTINGS(SKEIN_VEC3("velocity", 0, 1, 3)), &handle));
+                        break;
+                    case 3:
+                        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.4)), &handle));
+                        break;
+                    case 4:
+                        OK(world,
+                           skein_force_add(world, "separation",
+                                           SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_REAL("strength", 0.01)),
+                                           &handle));
+                        break;
+                    case 5:
+                        OK(world,
+                           skein_collider_add(
+                               world, "plane",
+                               SKEIN_SETTINGS(SKEIN_REAL("offset", 0.45), SKEIN_REAL("restitution", 0.3)), &handle));
+                        break;
+                    case 6:
+                        OK(world, skein_collider_add(world, "sphere",
+                                                     SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.2, 0),
+                                                                    SKEIN_REAL("radius", 0.25),
+                                                                    SKEIN_REAL("restitution", 0.3)),
+                                                     &handle));
+                        break;
                     case 7:
-                        OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){25, 26, 27, 12}, 2, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 10)), &handle));
+                        OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){25, 26, 27, 12}, 2,
+                                                       SKEIN_SETTINGS(SKEIN_REAL("stiffness", 10)), &handle));
                         break;
                     case 8: handle = cloth; break; // its springs and limits rest, its particles fly on
                     }
@@ -443,8 +486,10 @@ static void a_disabled_cloth_stays(void **state) {
         skein_world *world = new_world(method_names[m], 4);
         add_gravity(world);
         skein_handle cloth;
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_TEXT("pins", "0"), SKEIN_REAL("enabled", 0)), &cloth));
+        OK(world,
+           skein_body_add(world, "cloth", NULL,
+                          SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_TEXT("pins", "0"), SKEIN_REAL("enabled", 0)),
+                          &cloth));
         steps(world, 90, dt);
         for (size_t i = 1; i < 16; i++) assert_true(velocity_of(world, i).y == 0);
         OK(world, skein_set(world, cloth, "enabled", skein_number(1)));
@@ -504,7 +549,8 @@ static void views_and_copies_agree(void **state) {
         assert_true(mass > 0);
         if (i == 0 || i == 6) assert_true(w == 0);
         else assert_near(w * mass, 1, 2 * EPSILON);
-        if (w > 0) energy += 0.5 * mass * (v[3 * i] * v[3 * i] + v[3 * i + 1] * v[3 * i + 1] + v[3 * i + 2] * v[3 * i + 2]);
+        if (w > 0)
+            energy += 0.5 * mass * (v[3 * i] * v[3 * i] + v[3 * i + 1] * v[3 * i + 1] + v[3 * i + 2] * v[3 * i + 2]);
         if (w > 0) momentum += mass * v[3 * i + 1];
     }
     skein_statistics st = statistics_of(s.world);
@@ -580,15 +626,20 @@ static void numbers_that_are_none_are_refused(void **state) {
             xyz[k] = bad[i];
             FAILS(world, SKEIN_ERROR_VALUE, k < 3 ? "particle 0" : "particle 1", skein_positions_set(world, 0, 2, xyz));
             FAILS(world, SKEIN_ERROR_VALUE, "finite", skein_velocities_set(world, 0, 2, xyz));
-            FAILS(world, SKEIN_ERROR_VALUE, "finite", skein_particles_add(world, 2, xyz, NULL, (const double[]){1, 1}, NULL));
+            FAILS(world, SKEIN_ERROR_VALUE, "finite",
+                  skein_particles_add(world, 2, xyz, NULL, (const double[]){1, 1}, NULL));
             FAILS(world, SKEIN_ERROR_VALUE, "finite",
                   skein_particles_add(world, 2, (const double[6]){0}, xyz, (const double[]){1, 1}, NULL));
             if (k) continue;
-            FAILS(world, SKEIN_ERROR_VALUE, "mass", skein_particles_add(world, 1, (const double[3]){0}, NULL, &bad[i], NULL));
+            FAILS(world, SKEIN_ERROR_VALUE, "mass",
+                  skein_particles_add(world, 1, (const double[3]){0}, NULL, &bad[i], NULL));
         }
-    FAILS(world, SKEIN_ERROR_VALUE, "mass", skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){-1}, NULL));
-    FAILS(world, SKEIN_ERROR_VALUE, "mass", skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){1e-30}, NULL));
-    FAILS(world, SKEIN_ERROR_VALUE, "no particle 2", skein_constraint_add(world, "distance", (const uint32_t[]){0, 2}, 1, NULL, NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "mass",
+          skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){-1}, NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "mass",
+          skein_particles_add(world, 1, (const double[3]){0}, NULL, (const double[]){1e-30}, NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "no particle 2",
+          skein_constraint_add(world, "distance", (const uint32_t[]){0, 2}, 1, NULL, NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "distance 1: particle 1 is named twice",
           skein_constraint_add(world, "distance", (const uint32_t[]){0, 1, 1, 1}, 2, NULL, NULL));
     assert_int_equal(skein_object_count(world, SKEIN_CONSTRAINT), 0);
@@ -604,7 +655,8 @@ static void steps_have_a_length(void **state) {
     uint64_t before = skein_world_hash(s.world);
     for (size_t i = 0; i < COUNT(bad); i++) {
         FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0, at most 1e6", skein_world_step(s.world, bad[i]));
-        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0, at most 1e6", skein_world_explain(s.world, bad[i], NULL, NULL));
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected more than 0, at most 1e6",
+              skein_world_explain(s.world, bad[i], NULL, NULL));
     }
     static const double no_time[] = {-dt, NAN, INFINITY, 1e300};
     for (size_t i = 0; i < COUNT(no_time); i++)
@@ -647,13 +699,15 @@ static void blending_lies_between_the_last_two_steps(void **state) {
     OK(s.world, skein_world_reset(s.world));
     OK(s.world, skein_positions_blend(s.world, 0, 48, 1, &at.x));
     assert_under(length3(minus(at, position_of(s.world, 48))), 0);
-    FAILS(s.world, SKEIN_ERROR_VALUE, "1 particle from 51 on: the world has 51", skein_positions_blend(s.world, 0, 51, 1, &at.x));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "1 particle from 51 on: the world has 51",
+          skein_positions_blend(s.world, 0, 51, 1, &at.x));
     // on beyond the two steps, but not without end
     OK(s.world, skein_positions_blend(s.world, 2, 48, 1, &at.x));
     static const double none[] = {NAN, INFINITY, -INFINITY};
     at = (vec3){7, 7, 7};
     for (size_t i = 0; i < COUNT(none); i++)
-        FAILS(s.world, SKEIN_ERROR_VALUE, "expected a finite number", skein_positions_blend(s.world, none[i], 48, 1, &at.x));
+        FAILS(s.world, SKEIN_ERROR_VALUE, "expected a finite number",
+              skein_positions_blend(s.world, none[i], 48, 1, &at.x));
     assert_true(at.x == 7 && at.y == 7 && at.z == 7);
     skein_world_destroy(s.world);
 }
@@ -723,7 +777,8 @@ static void rigid_springs_need_a_position_method(void **state) {
     OK(s.world, skein_method_set(s.world, "symplectic_euler", NULL));
     uint64_t before = skein_world_hash(s.world);
     FAILS(s.world, SKEIN_ERROR_VALUE, "'rod' is rigid", skein_world_step(s.world, dt));
-    FAILS(s.world, SKEIN_ERROR_VALUE, "symplectic_euler needs finite stiffness", skein_world_explain(s.world, dt, NULL, NULL));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "symplectic_euler needs finite stiffness",
+          skein_world_explain(s.world, dt, NULL, NULL));
     assert_string_equal(skein_world_error(s.world)->where, "method.type");
     assert_true(skein_world_hash(s.world) == before);
     // switched off, or soft again, it is no obstacle; nor after a change of the method
@@ -817,11 +872,15 @@ static void two_bodies_in_one_world(void **state) {
             skein_handle first, second;
             if (world_kind != 1)
                 OK(world, skein_body_add(world, "cloth", NULL,
-                                         SKEIN_SETTINGS(SKEIN_TEXT("name", "first"), SKEIN_PAIR("grid", 5, 6), SKEIN_TEXT("pins", "top corners")), &first));
+                                         SKEIN_SETTINGS(SKEIN_TEXT("name", "first"), SKEIN_PAIR("grid", 5, 6),
+                                                        SKEIN_TEXT("pins", "top corners")),
+                                         &first));
             if (world_kind != 0)
-                OK(world, skein_body_add(world, "cloth", NULL,
-                                         SKEIN_SETTINGS(SKEIN_TEXT("name", "second"), SKEIN_PAIR("grid", 6, 5), SKEIN_TEXT("pins", "left edge"),
-                                                        SKEIN_REAL("stretch.stiffness", 100)), &second));
+                OK(world,
+                   skein_body_add(world, "cloth", NULL,
+                                  SKEIN_SETTINGS(SKEIN_TEXT("name", "second"), SKEIN_PAIR("grid", 6, 5),
+                                                 SKEIN_TEXT("pins", "left edge"), SKEIN_REAL("stretch.stiffness", 100)),
+                                  &second));
             if (world_kind == 2) {
                 skein_surface surface;
                 OK(world, skein_body_surface(world, second, &surface));

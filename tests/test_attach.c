@@ -7,7 +7,8 @@
 
 static const double dt = 1.0 / 60;
 
-static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                     {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
 static const uint32_t quad_sizes[] = {4, 4, 4, 4, 4, 4};
 
 static void corners_of_box(double size, double corner[8][3]) {
@@ -42,16 +43,19 @@ static void a_rigid_motion_carries_exactly(void **state) {
         for (int by = 0; by < 3; by++) { // its own motion; its fields, set before each step; a motion that leads it
             skein_world *world = new_world(all_methods[m], 4);
             add_spots(world, 0);
-            skein_handle box = add_box(
-                world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_VEC3("position", 1, 0.5, 0), SKEIN_TEXT("on", ""),
-                                      SKEIN_VEC3("motion.velocity", by ? 0 : 2, by ? 0 : -1, 0), SKEIN_REAL("motion.spin", by ? 0 : 3)));
+            skein_handle box = add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box"),
+                                                             SKEIN_VEC3("position", 1, 0.5, 0), SKEIN_TEXT("on", ""),
+                                                             SKEIN_VEC3("motion.velocity", by ? 0 : 2, by ? 0 : -1, 0),
+                                                             SKEIN_REAL("motion.spin", by ? 0 : 3)));
             if (by == 2) {
                 OK(world, skein_motion_add(world, "turn", NULL,
-                                           SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("pins", "4"), SKEIN_VEC3("centre", 1, 0.5, 0),
-                                                          SKEIN_VEC3("axis", 0, 1, 0), SKEIN_REAL("speed", 3)),
+                                           SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("pins", "4"),
+                                                          SKEIN_VEC3("centre", 1, 0.5, 0), SKEIN_VEC3("axis", 0, 1, 0),
+                                                          SKEIN_REAL("speed", 3)),
                                            NULL));
                 OK(world, skein_motion_add(world, "translate", NULL,
-                                           SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("pins", "4"), SKEIN_VEC3("velocity", 2, -1, 0)),
+                                           SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("pins", "4"),
+                                                          SKEIN_VEC3("velocity", 2, -1, 0)),
                                            NULL));
             }
             OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "box")), NULL));
@@ -114,10 +118,13 @@ static void offset_and_start(void **state) {
     add_particle(world, 0, 0.3, 0.9, 0.1);
     add_particle(world, 0, 0.1, 0.6, 0.2);
     add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_VEC3("motion.velocity", 0, 0, 1)));
-    OK(world, skein_motion_add(world, "attach", NULL,
-                               SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("offset", 0.02), SKEIN_TEXT("pins", "0")), NULL));
-    OK(world, skein_motion_add(world, "attach", NULL,
-                               SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("start", 30 * dt), SKEIN_TEXT("pins", "1")), NULL));
+    OK(world, skein_motion_add(
+                  world, "attach", NULL,
+                  SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("offset", 0.02), SKEIN_TEXT("pins", "0")), NULL));
+    OK(world,
+       skein_motion_add(world, "attach", NULL,
+                        SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("start", 30 * dt), SKEIN_TEXT("pins", "1")),
+                        NULL));
     steps(world, 30, dt);
     assert_near(position_of(world, 0).x, 0.3, 1e-6);
     assert_near(position_of(world, 0).y, 0.52, 1e-6);
@@ -136,23 +143,28 @@ static skein_world *with_cape(const char *method, bool keys, skein_handle *box, 
     add_gravity(world);
     *box = add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box")));
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", 13, 11), SKEIN_PAIR("size", 0.6, 0.8),
-                                            SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_VEC3("position", 0, 0.05, 0.55), SKEIN_TEXT("pins", "top edge")),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", 13, 11),
+                                            SKEIN_PAIR("size", 0.6, 0.8), SKEIN_VEC3("rotation", 90, 0, 0),
+                                            SKEIN_VEC3("position", 0, 0.05, 0.55), SKEIN_TEXT("pins", "top edge")),
                              cape));
     if (keys)
         OK(world, skein_motion_add(world, "keys", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 0.4834 0 0 0, 0.4835 15 0 0"), SKEIN_TEXT("on", "cape"),
-                                                  SKEIN_TEXT("colliders", "box"), SKEIN_REAL("jump", 1)),
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 0.4834 0 0 0, 0.4835 15 0 0"),
+                                                  SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "box"),
+                                                  SKEIN_REAL("jump", 1)),
                                    NULL));
-    OK(world, skein_motion_add(world, "attach", NULL,
-                               SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_TEXT("to", "box"), SKEIN_REAL("max_distance", 0.1)), NULL));
+    OK(world,
+       skein_motion_add(
+           world, "attach", NULL,
+           SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_TEXT("to", "box"), SKEIN_REAL("max_distance", 0.1)), NULL));
     return world;
 }
 
 static void assert_calm(skein_world *world, int frame) {
     skein_statistics t;
     OK(world, skein_world_statistics(world, &t));
-    if (!(t.kinetic_energy < 0.01 && t.max_stretch < 0.02)) print_error("frame %d: %g J, stretch %g\n", frame, t.kinetic_energy, t.max_stretch);
+    if (!(t.kinetic_energy < 0.01 && t.max_stretch < 0.02))
+        print_error("frame %d: %g J, stretch %g\n", frame, t.kinetic_energy, t.max_stretch);
     assert_true(t.kinetic_energy < 0.01 && t.max_stretch < 0.02);
 }
 
@@ -191,7 +203,8 @@ static void a_pull_gives_way(void **state) {
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 8)), NULL));
         add_particle(world, 0.5, 0, 0.6, 0);
         add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box")));
-        OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("pull", 2000)), NULL));
+        OK(world, skein_motion_add(world, "attach", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("pull", 2000)), NULL));
         steps(world, 360, dt);
         assert_near(position_of(world, 0).y, 0.6 - 0.5 * 9.81 / 2000, 4e-6);
         skein_world_destroy(world);
@@ -204,15 +217,17 @@ static void what_cannot_carry_is_refused(void **state) {
         const char *to, *field, *part;
         double value;
     } wrong[] = {{"bax", "start", "no collider of the name 'bax'", 0},
-                 {"ball", "start", "sphere", 0},   {"box", "inertia", "no moving frame", 0.5},
+                 {"ball", "start", "sphere", 0},
+                 {"box", "inertia", "no moving frame", 0.5},
                  {"box", "jump", "no moving frame", 1}};
     for (size_t i = 0; i < COUNT(wrong); i++) {
         skein_world *world = new_world("xpbd", 1);
         add_spots(world, 0);
         add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box")));
         OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_TEXT("name", "ball")), NULL));
-        OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", wrong[i].to), SKEIN_REAL(wrong[i].field, wrong[i].value)),
-                                   NULL));
+        OK(world, skein_motion_add(
+                      world, "attach", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("to", wrong[i].to), SKEIN_REAL(wrong[i].field, wrong[i].value)), NULL));
         skein_status status = skein_world_step(world, dt);
         FAILS(world, status, wrong[i].part, status);
         assert_true(status == SKEIN_ERROR_NAME || status == SKEIN_ERROR_VALUE);
@@ -225,7 +240,8 @@ static void it_takes_what_it_says(void **state) {
     (void)state;
     size_t count, refused = 0;
     const skein_field *common = skein_common_fields(SKEIN_MOTION, &count);
-    const skein_kind *attach = skein_kind_find(SKEIN_MOTION, "attach", NULL), *turn = skein_kind_find(SKEIN_MOTION, "turn", NULL);
+    const skein_kind *attach = skein_kind_find(SKEIN_MOTION, "attach", NULL),
+                     *turn = skein_kind_find(SKEIN_MOTION, "turn", NULL);
     for (size_t f = 0; f < count; f++) {
         skein_world *world = new_world("xpbd", 1);
         skein_handle motion;
@@ -238,7 +254,8 @@ static void it_takes_what_it_says(void **state) {
                                         : !strcmp(common[f].name, "jump_times") ? skein_text("1.5 4")
                                                                                 : skein_text("box"));
         bool said = status && strstr(skein_world_error(world)->message, "no moving frame") != NULL;
-        if (said == skein_kind_takes(attach, common[f].name)) fail_msg("%s: %s", common[f].name, skein_world_error(world)->message);
+        if (said == skein_kind_takes(attach, common[f].name))
+            fail_msg("%s: %s", common[f].name, skein_world_error(world)->message);
         assert_true(skein_kind_takes(turn, common[f].name));
         refused += said;
         skein_world_destroy(world);
@@ -277,10 +294,13 @@ static void of_several_the_named_one_counts(void **state) {
     add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "up"), SKEIN_VEC3("motion.velocity", 0, 1, 0)));
     add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "down"), SKEIN_VEC3("motion.velocity", 0, -1, 0)));
     skein_handle motion;
-    OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "up"), SKEIN_TEXT("pins", "0 1")), NULL));
-    OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "down"), SKEIN_TEXT("pins", "2 3")), &motion));
+    OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "up"), SKEIN_TEXT("pins", "0 1")),
+                               NULL));
+    OK(world, skein_motion_add(world, "attach", NULL,
+                               SKEIN_SETTINGS(SKEIN_TEXT("to", "down"), SKEIN_TEXT("pins", "2 3")), &motion));
     steps(world, 30, dt);
-    for (size_t i = 0; i < SPOTS; i++) assert_near(position_of(world, i).y, spots[i].y + (i < 2 ? 0.5 : i < 4 ? -0.5 : 0), 2e-6);
+    for (size_t i = 0; i < SPOTS; i++)
+        assert_near(position_of(world, i).y, spots[i].y + (i < 2 ? 0.5 : i < 4 ? -0.5 : 0), 2e-6);
     FAILS(world, SKEIN_ERROR_NAME, "there are 2", skein_set(world, motion, "to", skein_text("")));
     skein_world_destroy(world);
 }
@@ -335,12 +355,14 @@ static void what_is_tied_flies_as_one(void **state) {
         uint32_t p[4];
         vec3 start = {0, 0, 0}, turn = {0, 0, 0}, end = {0, 0, 0}, turned = {0, 0, 0};
         for (int i = 0; i < 4; i++)
-            p[i] = add_moving(world, masses[i], places[i][0], i || !off ? 0 : 0.2, places[i][2], noise(&seed), noise(&seed), noise(&seed));
+            p[i] = add_moving(world, masses[i], places[i][0], i || !off ? 0 : 0.2, places[i][2], noise(&seed),
+                              noise(&seed), noise(&seed));
         for (int i = 1; i < 4; i++) add_spring(world, p[i], p[i % 3 + 1], 1e4, 0);
         OK(world, skein_constraint_add(world, "attachment", p, 1, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 2e4)), NULL));
         for (int when = 0; when < 2; when++) {
             for (int i = 0; i < 4; i++) {
-                vec3 x = position_of(world, p[i]), v = velocity_of(world, p[i]), *sum = when ? &end : &start, *spin = when ? &turned : &turn;
+                vec3 x = position_of(world, p[i]), v = velocity_of(world, p[i]), *sum = when ? &end : &start,
+                     *spin = when ? &turned : &turn;
                 sum->x += masses[i] * v.x, sum->y += masses[i] * v.y, sum->z += masses[i] * v.z;
                 spin->x += masses[i] * (x.y * v.z - x.z * v.y), spin->y += masses[i] * (x.z * v.x - x.x * v.z);
                 spin->z += masses[i] * (x.x * v.y - x.y * v.x);
@@ -352,7 +374,8 @@ static void what_is_tied_flies_as_one(void **state) {
         vec3 u = minus(x[2], x[1]), w = minus(x[3], x[1]), d = minus(x[0], x[1]);
         vec3 n = {u.y * w.z - u.z * w.y, u.z * w.x - u.x * w.z, u.x * w.y - u.y * w.x};
         double scale = (off ? -0.2 : 0) / length3(n); // the normal looks down
-        vec3 way = {d.x - 0.3 * (u.x + w.x) - scale * n.x, d.y - 0.3 * (u.y + w.y) - scale * n.y, d.z - 0.3 * (u.z + w.z) - scale * n.z};
+        vec3 way = {d.x - 0.3 * (u.x + w.x) - scale * n.x, d.y - 0.3 * (u.y + w.y) - scale * n.y,
+                    d.z - 0.3 * (u.z + w.z) - scale * n.z};
         assert_near(length3(way), 0, 5e-3);
         assert_near(length3(minus(end, start)), 0, 2e-5);
         assert_near(length3(minus(turned, turn)), 0, 1e-3 * length3(turn));
@@ -366,8 +389,11 @@ static void the_nearest_triangles_are_found(void **state) {
     skein_world *world = new_world("xpbd", 2);
     skein_handle cloth, jelly;
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.5, 0.5), SKEIN_VEC3("position", 0.76, 0.1, 0.05)), &cloth));
-    OK(world, skein_body_add(world, "lattice", NULL, SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 1, 1), SKEIN_VEC3("rotation", 10, 20, 0)), &jelly));
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.5, 0.5),
+                                            SKEIN_VEC3("position", 0.76, 0.1, 0.05)),
+                             &cloth));
+    OK(world, skein_body_add(world, "lattice", NULL,
+                             SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 1, 1), SKEIN_VEC3("rotation", 10, 20, 0)), &jelly));
     uint32_t chosen[100], corners[400];
     size_t count;
     OK(world, skein_body_select(world, cloth, "0 9 18 27 36 45 54 63 72, 80", chosen, COUNT(chosen), &count));
@@ -378,8 +404,10 @@ static void the_nearest_triangles_are_found(void **state) {
         double best = INFINITY, near = INFINITY;
         vec3 p = position_of(world, chosen[i]);
         assert_int_equal(corners[4 * i], chosen[i]);
-        for (size_t q = 81; q < skein_particle_count(world); q++) best = fmin(best, length3(minus(position_of(world, q), p)));
-        for (int k = 1; k < 4; k++) near = fmin(near, length3(minus(position_of(world, corners[4 * i + (size_t)k]), p)));
+        for (size_t q = 81; q < skein_particle_count(world); q++)
+            best = fmin(best, length3(minus(position_of(world, q), p)));
+        for (int k = 1; k < 4; k++)
+            near = fmin(near, length3(minus(position_of(world, corners[4 * i + (size_t)k]), p)));
         assert_true(near < best + 0.2);
     }
     FAILS(world, SKEIN_ERROR_VALUE, "itself", skein_attachments_find(world, chosen, 1, cloth, corners));
@@ -392,7 +420,8 @@ static void the_nearest_triangles_are_found(void **state) {
 static void words_name_what_pins_do(void **state) {
     (void)state;
     // two quads of vertices of their own, which a weld joins along x = 0
-    static const double vertex[8][3] = {{-1, 1, 0}, {0, 1, 0}, {0, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {1, 1, 0.1}, {1, 0, 0.1}, {0, 0, 0}};
+    static const double vertex[8][3] = {{-1, 1, 0}, {0, 1, 0},   {0, 0, 0},   {-1, 0, 0},
+                                        {0, 1, 0},  {1, 1, 0.1}, {1, 0, 0.1}, {0, 0, 0}};
     static const uint32_t sizes[2] = {4, 4}, corners[8] = {0, 1, 2, 3, 4, 5, 6, 7};
     const skein_mesh mesh = {&vertex[0][0], 8, sizes, 2, corners, 8};
     const struct {
@@ -401,12 +430,21 @@ static void words_name_what_pins_do(void **state) {
         const skein_setting *settings;
         size_t least[12]; // how many they name
     } bodies[] = {
-        {"cloth", {"all", "corners", "top corners", "left edge", "bottom edge", "border", "right corners, 4"}, NULL,
-         SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7), SKEIN_VEC3("rotation", 90, 10, 0)), {35, 4, 2, 5, 7, 20, 3}},
-        {"cloth", {"all", "corners", "top corners", "top edge", "left edge", "border", "bottom edge, 0"}, &mesh,
-         SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-3)), {6, 4, 2, 3, 2, 6, 4}},
-        {"lattice", {"all", "corners", "left face", "top face", "front face, 0"}, NULL,
-         SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 4, 5)), {60, 8, 20, 15, 13}},
+        {"cloth",
+         {"all", "corners", "top corners", "left edge", "bottom edge", "border", "right corners, 4"},
+         NULL,
+         SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7), SKEIN_VEC3("rotation", 90, 10, 0)),
+         {35, 4, 2, 5, 7, 20, 3}},
+        {"cloth",
+         {"all", "corners", "top corners", "top edge", "left edge", "border", "bottom edge, 0"},
+         &mesh,
+         SKEIN_SETTINGS(SKEIN_REAL("weld", 1e-3)),
+         {6, 4, 2, 3, 2, 6, 4}},
+        {"lattice",
+         {"all", "corners", "left face", "top face", "front face, 0"},
+         NULL,
+         SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 4, 5)),
+         {60, 8, 20, 15, 13}},
         {"rope", {"all", "first", "last", "first, last"}, NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 12)), {12, 1, 1, 2}},
     };
     for (size_t b = 0; b < COUNT(bodies); b++)
@@ -446,9 +484,13 @@ static void a_motion_leads_what_words_name(void **state) {
     skein_world *world = new_world("xpbd", 2);
     skein_handle cloth, leads;
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 5, 5), SKEIN_TEXT("pins", "top corners")), &cloth));
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 5, 5),
+                                            SKEIN_TEXT("pins", "top corners")),
+                             &cloth));
     OK(world, skein_motion_add(world, "translate", NULL,
-                               SKEIN_SETTINGS(SKEIN_TEXT("on", "sheet"), SKEIN_TEXT("pins", "left edge"), SKEIN_VEC3("velocity", 0, 0.1, 0)), &leads));
+                               SKEIN_SETTINGS(SKEIN_TEXT("on", "sheet"), SKEIN_TEXT("pins", "left edge"),
+                                              SKEIN_VEC3("velocity", 0, 0.1, 0)),
+                               &leads));
     vec3 left = position_of(world, 0), right = position_of(world, 4);
     steps(world, 30, dt);
     assert_near(position_of(world, 0).y - left.y, 30 * dt * 0.1, 1e-5);
@@ -464,8 +506,8 @@ static void a_motion_leads_what_words_name(void **state) {
 static void its_stiffness_counts_at_its_place(void **state) {
     (void)state;
     skein_world *world = new_world("symplectic_euler", 1);
-    uint32_t p[4] = {add_particle(world, 0.01, 0.4, 0.05, 0.5), add_particle(world, 0, 0, 0, 0), add_particle(world, 0, 1, 0, 0.2),
-                     add_particle(world, 0, 0.1, 0, 1)};
+    uint32_t p[4] = {add_particle(world, 0.01, 0.4, 0.05, 0.5), add_particle(world, 0, 0, 0, 0),
+                     add_particle(world, 0, 1, 0, 0.2), add_particle(world, 0, 0.1, 0, 1)};
     skein_stability stability;
     OK(world, skein_constraint_add(world, "attachment", p, 1, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 100)), NULL));
     OK(world, skein_world_stability(world, &stability));
@@ -488,20 +530,25 @@ static void backward_euler_solves_stiff_attachments(void **state) {
         // in double, whose rounding forgives nothing, substeps of this scene are left unsolved
         add_gravity(world);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 10, 10), SKEIN_PAIR("size", 0.5, 0.5), SKEIN_VEC3("position", rows[r][1], 0.5, 0)),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 10, 10), SKEIN_PAIR("size", 0.5, 0.5),
+                                                SKEIN_VEC3("position", rows[r][1], 0.5, 0)),
                                  &cloth));
-        OK(world, skein_body_add(world, "lattice", NULL, SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 1, 1), SKEIN_VEC3("position", 0, 0.5, 0)), &jelly));
+        OK(world,
+           skein_body_add(world, "lattice", NULL,
+                          SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 1, 1), SKEIN_VEC3("position", 0, 0.5, 0)), &jelly));
         OK(world, skein_collider_add(world, "plane", NULL, NULL));
         OK(world, skein_body_select(world, cloth, "0 10 20 30 40 50 60 70 80 90", chosen, COUNT(chosen), &count));
         OK(world, skein_attachments_find(world, chosen, count, jelly, corners));
-        OK(world, skein_constraint_add(world, "attachment", corners, count, SKEIN_SETTINGS(SKEIN_REAL("stiffness", rows[r][0])), NULL));
+        OK(world, skein_constraint_add(world, "attachment", corners, count,
+                                       SKEIN_SETTINGS(SKEIN_REAL("stiffness", rows[r][0])), NULL));
         for (int n = 0; n < 20; n++) {
             steps(world, 1, dt);
             skein_statistics s = statistics_of(world);
             if (sizeof(skein_real) == sizeof(float)) assert_int_equal(s.unsolved, 0);
             iterations += s.newton_iterations;
         }
-        print_message("stiffness %g N/m, cloth at %g m: %zu iterations of Newton's method in 40 substeps\n", rows[r][0], rows[r][1], iterations);
+        print_message("stiffness %g N/m, cloth at %g m: %zu iterations of Newton's method in 40 substeps\n", rows[r][0],
+                      rows[r][1], iterations);
         skein_world_destroy(world);
     }
 }
@@ -515,11 +562,13 @@ static uint64_t hash_of_cape(int threads, const char *isa) {
     assert_non_null(world);
     add_gravity(world);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 48, 48), SKEIN_PAIR("size", 1, 1), SKEIN_VEC3("position", 1, 0.5, 0),
-                                            SKEIN_TEXT("pins", "left edge")),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 48, 48), SKEIN_PAIR("size", 1, 1),
+                                            SKEIN_VEC3("position", 1, 0.5, 0), SKEIN_TEXT("pins", "left edge")),
                              NULL));
-    add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_REAL("motion.spin", 2), SKEIN_VEC3("motion.velocity", 0.5, 0, 0)));
-    OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("pull", 50)), NULL));
+    add_box(world, SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_REAL("motion.spin", 2),
+                                  SKEIN_VEC3("motion.velocity", 0.5, 0, 0)));
+    OK(world,
+       skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "box"), SKEIN_REAL("pull", 50)), NULL));
     steps(world, 20, dt);
     uint64_t hash = skein_world_hash(world);
     skein_world_destroy(world);
@@ -536,12 +585,23 @@ static void bits_do_not_depend_on_threads(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_rigid_motion_carries_exactly), cmocka_unit_test(on_a_deforming_mesh_they_keep_their_weights),
-        cmocka_unit_test(offset_and_start),               cmocka_unit_test(a_pull_gives_way),
+        cmocka_unit_test(a_rigid_motion_carries_exactly),
+        cmocka_unit_test(on_a_deforming_mesh_they_keep_their_weights),
+        cmocka_unit_test(offset_and_start),
+        cmocka_unit_test(a_pull_gives_way),
         cmocka_unit_test(a_leash_goes_along_with_jumps),
-        cmocka_unit_test(what_cannot_carry_is_refused),   cmocka_unit_test(it_takes_what_it_says), cmocka_unit_test(colliders_come_and_go),
-        cmocka_unit_test(on_a_triangle_that_deforms_it_follows), cmocka_unit_test(what_is_tied_flies_as_one),
-        cmocka_unit_test(the_nearest_triangles_are_found), cmocka_unit_test(words_name_what_pins_do), cmocka_unit_test(a_motion_leads_what_words_name), cmocka_unit_test(its_stiffness_counts_at_its_place), cmocka_unit_test(backward_euler_solves_stiff_attachments), cmocka_unit_test(of_several_the_named_one_counts), cmocka_unit_test(bits_do_not_depend_on_threads),
+        cmocka_unit_test(what_cannot_carry_is_refused),
+        cmocka_unit_test(it_takes_what_it_says),
+        cmocka_unit_test(colliders_come_and_go),
+        cmocka_unit_test(on_a_triangle_that_deforms_it_follows),
+        cmocka_unit_test(what_is_tied_flies_as_one),
+        cmocka_unit_test(the_nearest_triangles_are_found),
+        cmocka_unit_test(words_name_what_pins_do),
+        cmocka_unit_test(a_motion_leads_what_words_name),
+        cmocka_unit_test(its_stiffness_counts_at_its_place),
+        cmocka_unit_test(backward_euler_solves_stiff_attachments),
+        cmocka_unit_test(of_several_the_named_one_counts),
+        cmocka_unit_test(bits_do_not_depend_on_threads),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

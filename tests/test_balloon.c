@@ -181,7 +181,7 @@ static void wall_tension_is_pressure_times_half_the_radius(void **state) {
         }
         double tension = stress / (2 * area);
         printf("%s: radius %.4f, tension %.4f N/m, p R/2 = %.4f\n", methods[m], radius, tension, pressure * radius / 2);
-        assert_true(radius > 0.55);                          // it is blown up
+        assert_true(radius > 0.55);                         // it is blown up
         assert_share(tension, pressure * radius / 2, 0.02); // a ball of triangles is a little smaller inside
         // and without that: 3 p V = sum f l, whatever the shape
         assert_share(stress, 3 * pressure * volume_of(&b, x), 5e-3);
@@ -313,8 +313,7 @@ static void open_surfaces_are_refused(void **state) {
           skein_constraint_add(world, "pressure", t[0], TRIANGLES, NULL, NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "none were given", skein_constraint_add(world, "pressure", t[0], 0, NULL, NULL));
     const uint32_t flat[2][3] = {{0, 1, 2}, {2, 1, 0}};
-    FAILS(world, SKEIN_ERROR_VALUE, "no volume inside",
-          skein_constraint_add(world, "pressure", flat[0], 2, NULL, NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "no volume inside", skein_constraint_add(world, "pressure", flat[0], 2, NULL, NULL));
     assert_int_equal(skein_object_count(world, SKEIN_CONSTRAINT), 0);
     OK(world, skein_constraint_add(world, "enclosed_volume", b.triangle[0], TRIANGLES,
                                    SKEIN_SETTINGS(SKEIN_REAL("stiffness", INFINITY)), NULL));
@@ -412,7 +411,9 @@ static void a_grabbed_balloon_stays_as_large(void **state) {
         uint32_t sizes[TRIANGLES];
         for (int t = 0; t < TRIANGLES; t++) sizes[t] = three;
         const skein_mesh mesh = {b.x[0], VERTICES, sizes, TRIANGLES, b.triangle[0], 3 * TRIANGLES};
-        OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_REAL("stretch.stiffness", 1000), SKEIN_REAL("shear.stiffness", 300)), NULL));
+        OK(world, skein_body_add(
+                      world, "cloth", &mesh,
+                      SKEIN_SETTINGS(SKEIN_REAL("stretch.stiffness", 1000), SKEIN_REAL("shear.stiffness", 300)), NULL));
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 20)), NULL));
         if (c == GRABBED_FIRST) {
             OK(world, skein_particle_pin(world, 0, true));

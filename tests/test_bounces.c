@@ -33,9 +33,8 @@ static void friction_takes_its_share_of_the_whole_bounce(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(all_methods); m++) {
         skein_world *world = new_world(all_methods[m], 1);
-        OK(world,
-           skein_collider_add(world, "plane",
-                              SKEIN_SETTINGS(SKEIN_REAL("restitution", 0.5), SKEIN_REAL("friction", 0.2)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("restitution", 0.5), SKEIN_REAL("friction", 0.2)), NULL));
         add_moving(world, 0.3, 0, 0.002, 0, 3, -2, 0);
         steps(world, 1, 1e-4);
         vec3 v = velocity_of(world, 0);

@@ -29,7 +29,8 @@ static int most_for(const machine *m, double ms, int most) {
 
 static void the_most_that_it_pays_for(void **state) {
     (void)state;
-    static const machine machines[] = {{0.1, 0.05, 1, 0, 0}, {2, 0.3, 1, 0, 0}, {0, 0.01, 2, 0, 0}, {0.5, 1e-4, 1, 0, 0}};
+    static const machine machines[] = {
+        {0.1, 0.05, 1, 0, 0}, {2, 0.3, 1, 0, 0}, {0, 0.01, 2, 0, 0}, {0.5, 1e-4, 1, 0, 0}};
     for (size_t i = 0; i < COUNT(machines); i++) {
         int before = 0;
         for (double ms = 0.01; ms < 1000; ms *= 1.07) {
@@ -96,7 +97,8 @@ static void what_is_no_budget_is_refused(void **state) {
     assert_non_null(strstr(o.err, "expected a number"));
     outcome_free(&o);
     // another method keeps it
-    o = SKEIN("run", SCENE, "--frames", "2", "--no-progress", "--set", "method.budget_ms=0.0001", "--set", "method.type=pbd");
+    o = SKEIN("run", SCENE, "--frames", "2", "--no-progress", "--set", "method.budget_ms=0.0001", "--set",
+              "method.type=pbd");
     assert_status(o, 0);
     assert_non_null(strstr(o.err, "is less than a frame takes"));
     outcome_free(&o);

@@ -11,7 +11,8 @@ typedef struct vertex {
 static skein_world *falling_cloth(skein_handle *cloth) {
     skein_world *world = new_world("xpbd", 4);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7), SKEIN_VEC3("position", 1, 2, 3), SKEIN_TEXT("pins", "top corners")),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7), SKEIN_VEC3("position", 1, 2, 3),
+                                            SKEIN_TEXT("pins", "top corners")),
                              cloth));
     add_gravity(world);
     steps(world, 7, 0.01);
@@ -23,9 +24,10 @@ static void copies_with_a_stride(void **state) {
     enum { N = 35, FIRST = 4, COUNT_OF_ALL = 30, STRIDE = 5 };
     skein_handle cloth;
     skein_world *world = falling_cloth(&cloth);
-    skein_status (*const plain[])(const skein_world *, size_t, size_t, double *) = {skein_positions_copy, skein_velocities_copy};
+    skein_status (*const plain[])(const skein_world *, size_t, size_t, double *) = {skein_positions_copy,
+                                                                                    skein_velocities_copy};
     skein_status (*const strided[])(const skein_world *, size_t, size_t, skein_buffer) = {skein_positions_copy_to,
-                                                                                         skein_velocities_copy_to};
+                                                                                          skein_velocities_copy_to};
     for (int what = 0; what < 2; what++) {
         double ought[3 * COUNT_OF_ALL], wide[STRIDE * COUNT_OF_ALL], tight[3 * COUNT_OF_ALL];
         float narrow[STRIDE * COUNT_OF_ALL], narrow_tight[3 * COUNT_OF_ALL];
@@ -46,10 +48,13 @@ static void copies_with_a_stride(void **state) {
             assert_true(wide[STRIDE * i] == 77 && wide[STRIDE * i + 4] == 77);
             assert_true(narrow[STRIDE * i] == 77 && narrow[STRIDE * i + 4] == 77);
         }
-        FAILS(world, SKEIN_ERROR_VALUE, "a stride of 11 bytes: expected 0, or 12 or more", strided[what](world, 0, 1, skein_floats(narrow, 11)));
-        FAILS(world, SKEIN_ERROR_VALUE, "expected 0, or 24 or more", strided[what](world, 0, 1, skein_doubles(wide, 12)));
+        FAILS(world, SKEIN_ERROR_VALUE, "a stride of 11 bytes: expected 0, or 12 or more",
+              strided[what](world, 0, 1, skein_floats(narrow, 11)));
+        FAILS(world, SKEIN_ERROR_VALUE, "expected 0, or 24 or more",
+              strided[what](world, 0, 1, skein_doubles(wide, 12)));
         FAILS(world, SKEIN_ERROR_VALUE, "the world has 35", strided[what](world, N, 1, skein_doubles(wide, 0)));
-        FAILS(world, SKEIN_ERROR_VALUE, "expected SKEIN_FLOAT32", strided[what](world, 0, 1, (skein_buffer){wide, 0, (skein_number_type)7}));
+        FAILS(world, SKEIN_ERROR_VALUE, "expected SKEIN_FLOAT32",
+              strided[what](world, 0, 1, (skein_buffer){wide, 0, (skein_number_type)7}));
     }
     skein_world_destroy(world);
 }
@@ -87,9 +92,12 @@ static void a_surface_goes_into_a_vertex_buffer(void **state) {
     OK(world, skein_body_vertices_copy(world, cloth, 1, skein_floats(buffer[0].position, sizeof *buffer),
                                        skein_floats(buffer[0].normal, sizeof *buffer)));
     for (size_t i = 0; i < COUNT(normals); i++)
-        assert_true((float)normals[i] == buffer[i / 3].normal[i % 3] && (float)positions[i] == buffer[i / 3].position[i % 3]);
-    FAILS(world, SKEIN_ERROR_VALUE, "finite", skein_body_vertices_copy(world, cloth, NAN, skein_doubles(positions, 0), skein_doubles(NULL, 0)));
-    FAILS(world, SKEIN_ERROR_VALUE, "normals", skein_body_vertices_copy(world, cloth, 1, skein_doubles(positions, 0), skein_doubles(normals, 8)));
+        assert_true((float)normals[i] == buffer[i / 3].normal[i % 3] &&
+                    (float)positions[i] == buffer[i / 3].position[i % 3]);
+    FAILS(world, SKEIN_ERROR_VALUE, "finite",
+          skein_body_vertices_copy(world, cloth, NAN, skein_doubles(positions, 0), skein_doubles(NULL, 0)));
+    FAILS(world, SKEIN_ERROR_VALUE, "normals",
+          skein_body_vertices_copy(world, cloth, 1, skein_doubles(positions, 0), skein_doubles(normals, 8)));
     skein_world_destroy(world);
 }
 
@@ -97,7 +105,8 @@ static void a_surface_goes_into_a_vertex_buffer(void **state) {
  * weighted by area. Welded, a vertex that is written twice has one normal. */
 static void normals_are_weighted_by_area(void **state) {
     (void)state;
-    static const double corners[] = {-1, 0, 0, -1, 0, 2, 0, 0, 2, 0, 0, 0, /* twice: */ 0, 0, 0, 0, 0, 2, 3, 3, 2, 3, 3, 0};
+    static const double corners[] = {-1, 0, 0, -1, 0, 2, 0, 0, 2, 0, 0, 0, /* twice: */ 0,
+                                     0,  0, 0, 0,  2, 3, 3, 2, 3, 3, 0};
     static const uint32_t sizes[] = {4, 4}, faces[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const skein_mesh mesh = {corners, 8, sizes, 2, faces, 8};
     skein_world *world = new_world("xpbd", 1);
@@ -107,7 +116,8 @@ static void normals_are_weighted_by_area(void **state) {
     OK(world, skein_body_vertices_copy(world, roof, 1, skein_doubles(NULL, 0), skein_doubles(n, 0)));
     // level: 2 m2 along y; sloping: sqrt(18) x 2 m2 along (-1, 1, 0)/sqrt(2), which is (-6, 6, 0)
     double x = -6 / sqrt(36 + 64), y = 8 / sqrt(36 + 64), d = sqrt(0.5);
-    const double ought[8][3] = {{0, 1, 0}, {0, 1, 0}, {x, y, 0}, {x, y, 0}, {x, y, 0}, {x, y, 0}, {-d, d, 0}, {-d, d, 0}};
+    const double ought[8][3] = {{0, 1, 0}, {0, 1, 0}, {x, y, 0},  {x, y, 0},
+                                {x, y, 0}, {x, y, 0}, {-d, d, 0}, {-d, d, 0}};
     for (int v = 0; v < 8; v++)
         for (int k = 0; k < 3; k++) assert_near(n[3 * v + k], ought[v][k], 4 * EPSILON);
     skein_world_destroy(world);
@@ -119,8 +129,10 @@ static void meshes_that_are_none_have_no_normals(void **state) {
     double n[9];
     skein_error error;
     const uint32_t three[] = {3}, two[] = {2}, four[] = {4}, good[] = {0, 2, 1}, bad[] = {0, 2, 3};
-    const skein_mesh meshes[] = {{corners, 3, three, 1, bad, 3}, {corners, 3, two, 1, good, 3}, {corners, 3, four, 1, good, 3}};
-    static const char *const words[] = {"face 0 names vertex 3: the mesh has 3", "face 0 has 2 corners", "face 0 has 4 corners"};
+    const skein_mesh meshes[] = {
+        {corners, 3, three, 1, bad, 3}, {corners, 3, two, 1, good, 3}, {corners, 3, four, 1, good, 3}};
+    static const char *const words[] = {"face 0 names vertex 3: the mesh has 3", "face 0 has 2 corners",
+                                        "face 0 has 4 corners"};
     for (int m = 0; m < 3; m++) {
         assert_int_equal(skein_mesh_normals(&meshes[m], SKEIN_NORMALS_ANGLE, n, &error), SKEIN_ERROR_MESH);
         assert_non_null(strstr(error.message, words[m]));
@@ -153,10 +165,8 @@ static void a_rope_has_vertices(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(copies_with_a_stride),
-        cmocka_unit_test(a_surface_goes_into_a_vertex_buffer),
-        cmocka_unit_test(normals_are_weighted_by_area),
-        cmocka_unit_test(meshes_that_are_none_have_no_normals),
+        cmocka_unit_test(copies_with_a_stride),         cmocka_unit_test(a_surface_goes_into_a_vertex_buffer),
+        cmocka_unit_test(normals_are_weighted_by_area), cmocka_unit_test(meshes_that_are_none_have_no_normals),
         cmocka_unit_test(a_rope_has_vertices),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

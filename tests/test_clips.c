@@ -562,11 +562,12 @@ static void a_file_has_no_face_that_is_cut(void **state) {
         assert_true(io_surface_uncut(world, cloth, &s, &room));
         assert_true(!room == !cut);
         io_mesh_uncut(&read, world, cloth);
-        io_clip clip = {.name = "two",
-                        .mesh = {read.positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count},
-                        .read = &read,
-                        .read_path = "two.obj",
-                        .params = &plain_params};
+        io_clip clip = {
+            .name = "two",
+            .mesh = {read.positions, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count},
+            .read = &read,
+            .read_path = "two.obj",
+            .params = &plain_params};
         assert_true(io_mesh_has_faces_of(&read, &clip.mesh));
         assert_int_equal(io_clip_obj.write(&clip, in_folder("out.obj"), &error), SKEIN_OK);
         char *written = read_text(in_folder("out.obj"));

@@ -27,14 +27,15 @@ static void face(draft *d, uint32_t size, const uint32_t *corners) {
     memcpy(d->corners + d->filled, corners, size * sizeof *corners);
     d->filled += size;
 }
-#define FACE(draft_, ...)                                                                                     \
+#define FACE(draft_, ...) \
     face((draft_), (uint32_t)COUNT(((const uint32_t[]){__VA_ARGS__})), (const uint32_t[]){__VA_ARGS__})
 
 /* rows x columns vertices in the xy-plane, a metre wide and high, the first row on top. */
 static draft *upright(size_t rows, size_t columns, bool triangles) {
     draft *d = calloc(1, sizeof *d);
     for (size_t r = 0; r < rows; r++)
-        for (size_t c = 0; c < columns; c++) vertex(d, (double)c / (double)(columns - 1), 1 - (double)r / (double)(rows - 1), 0);
+        for (size_t c = 0; c < columns; c++)
+            vertex(d, (double)c / (double)(columns - 1), 1 - (double)r / (double)(rows - 1), 0);
     for (size_t r = 0; r + 1 < rows; r++)
         for (size_t c = 0; c + 1 < columns; c++) {
             uint32_t a = (uint32_t)(r * columns + c), b = a + (uint32_t)columns;
@@ -218,7 +219,8 @@ static void no_pair_gets_two_springs(void **state) {
 
     // an octahedron: four edges share each of the three long diagonals
     memset(d, 0, sizeof *d);
-    for (int k = 0; k < 6; k++) vertex(d, k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, k == 4 ? 1 : k == 5 ? -1 : 0);
+    for (int k = 0; k < 6; k++)
+        vertex(d, k == 0 ? 1 : k == 1 ? -1 : 0, k == 2 ? 1 : k == 3 ? -1 : 0, k == 4 ? 1 : k == 5 ? -1 : 0);
     for (uint32_t n = 0; n < 8; n++) FACE(d, n & 1, 2 + (n >> 1 & 1), 4 + (n >> 2 & 1));
     world = new_world("xpbd", 1);
     build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
@@ -279,7 +281,8 @@ static void springs_share_the_material_by_area(void **state) {
     (void)state;
     double off = 8 * EPSILON;
     skein_world *world = new_world("xpbd", 1);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 4, 4)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 4, 4)), NULL));
     assert_near(share_of(world, "stretch", 6, 7), 1, off);
     assert_near(share_of(world, "stretch", 7, 12), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
@@ -297,8 +300,8 @@ static void springs_share_the_material_by_area(void **state) {
     assert_near(share_of(world, "stretch", 6, 7), 1, off);
     assert_near(share_of(world, "stretch", 1, 2), 0.5, off);
     assert_near(share_of(world, "stretch", 6, 12), 0.5, off);
-    assert_near(share_of(world, "bend", 7, 11), 1, off);    // over the diagonal 6-12
-    assert_near(share_of(world, "bend", 6, 17), 0.4, off);  // over the edge 11-12, two down and one across
+    assert_near(share_of(world, "bend", 7, 11), 1, off);   // over the diagonal 6-12
+    assert_near(share_of(world, "bend", 6, 17), 0.4, off); // over the edge 11-12, two down and one across
     skein_world_destroy(world);
 
     // where the pair over a fold is an edge already, the edge keeps its own share
@@ -332,7 +335,9 @@ static void mass_is_density_times_area(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 4, 5), SKEIN_PAIR("size", 2, 0.6), SKEIN_REAL("density", 0.3)), NULL));
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 4, 5), SKEIN_PAIR("size", 2, 0.6),
+                                            SKEIN_REAL("density", 0.3)),
+                             NULL));
     double cell = 2.0 / 4 * 0.6 / 3 * 0.3;
     for (size_t r = 0; r < 4; r++)
         for (size_t c = 0; c < 5; c++) {
@@ -361,8 +366,9 @@ static void a_sheet_is_placed_as_asked(void **state) {
     vertex(d, 1, 0, 0), vertex(d, 0, 1, 0), vertex(d, 0, 0, 1), vertex(d, 1, 1, 1);
     FACE(d, 0, 1, 2);
     skein_world *world = new_world("xpbd", 1);
-    build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 90, 0, 90), SKEIN_VEC3("position", 10, 20, 30),
-                                   SKEIN_VEC3("velocity", 1, 2, 3), SKEIN_TEXT("pins", "2")));
+    build(world, d,
+          SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 90, 0, 90),
+                         SKEIN_VEC3("position", 10, 20, 30), SKEIN_VEC3("velocity", 1, 2, 3), SKEIN_TEXT("pins", "2")));
     // about x: y to z, z to -y; then about z: x to y, y to -x
     assert_under(length3(minus(position_of(world, 0), (vec3){10, 22, 30})), 1e-5);
     assert_under(length3(minus(position_of(world, 1), (vec3){10, 20, 32})), 1e-5);
@@ -380,7 +386,8 @@ static void a_sheet_is_placed_as_asked(void **state) {
     free(d);
 
     world = new_world("xpbd", 1);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 5), SKEIN_PAIR("size", 4, 1)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 5), SKEIN_PAIR("size", 4, 1)), NULL));
     assert_under(length3(minus(position_of(world, 0), (vec3){-2, 0, -0.5})), 0);
     assert_under(length3(minus(position_of(world, 4), (vec3){2, 0, -0.5})), 0);
     assert_under(length3(minus(position_of(world, 10), (vec3){-2, 0, 0.5})), 0);
@@ -464,7 +471,8 @@ static void welding_joins_particles_and_keeps_vertices(void **state) {
     build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 0.9)));
     OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
     assert_int_equal(skein_particle_count(world), 4);
-    assert_true(surface.particle_of_vertex[2] == 0 && surface.particle_of_vertex[1] == 1 && surface.particle_of_vertex[5] == 2);
+    assert_true(surface.particle_of_vertex[2] == 0 && surface.particle_of_vertex[1] == 1 &&
+                surface.particle_of_vertex[5] == 2);
     skein_world_destroy(world);
     free(d);
 }
@@ -527,8 +535,9 @@ static void faults_of_meshes_are_warnings(void **state) {
     FACE(d, 0, 4, 3);
     world = world_with_notes(&n);
     build(world, d, SKEIN_SETTINGS(BY_SPRINGS));
-    assert_string_equal(n.text, "cloth: 1 edge is shorter than a tenth of the mean, which is 0.92 m, such as 3-4 with 0.02 m; such are "
-                                "stretched most: weld (a distance, such as 0.09) joins what is nearer\n");
+    assert_string_equal(
+        n.text, "cloth: 1 edge is shorter than a tenth of the mean, which is 0.92 m, such as 3-4 with 0.02 m; such are "
+                "stretched most: weld (a distance, such as 0.09) joins what is nearer\n");
     skein_world_destroy(world);
 
     // two squares beside each other whose common border was never joined
@@ -598,7 +607,8 @@ static void impossible_meshes_are_refused(void **state) {
     mesh = mesh_of(d), mesh.vertex_count = 0;
     FAILS(world, SKEIN_ERROR_MESH, "vertices and faces", skein_body_add(world, "cloth", &mesh, NULL, NULL));
     mesh = mesh_of(d), mesh.vertex_count = 8;
-    FAILS(world, SKEIN_ERROR_MESH, "face 3 names vertex 8, but there are only 8", skein_body_add(world, "cloth", &mesh, NULL, NULL));
+    FAILS(world, SKEIN_ERROR_MESH, "face 3 names vertex 8, but there are only 8",
+          skein_body_add(world, "cloth", &mesh, NULL, NULL));
     d->sizes[1] = 2;
     FAILS(world, SKEIN_ERROR_MESH, "face 1 has 2 corners", skein_body_add(world, "cloth", &mesh, NULL, NULL));
     d->sizes[1] = 400;
@@ -613,9 +623,11 @@ static void impossible_meshes_are_refused(void **state) {
         FAILS(world, SKEIN_ERROR_MESH, "vertex 4", skein_body_add(world, "cloth", &mesh, NULL, NULL));
     }
     d->positions[3 * 4 + 1] = 0.5;
-    FAILS(world, SKEIN_ERROR_VALUE, "not both", skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 3)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "not both",
+          skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 3)), NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "a mesh or a grid", skein_body_add(world, "cloth", NULL, NULL, NULL));
-    FAILS(world, SKEIN_ERROR_VALUE, "1 x 5", skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 1, 5)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "1 x 5",
+          skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 1, 5)), NULL));
     // nothing of all that stayed, and the world is as good as new
     assert_int_equal(skein_particle_count(world), 0);
     assert_int_equal(skein_object_count(world, SKEIN_BODY), 0);
@@ -642,7 +654,8 @@ static void assert_pins(const draft *d, const char *pins, const char *held) {
     if (d) mesh = mesh_of(d);
     OK(world, skein_body_add(world, "cloth", d ? &mesh : NULL,
                              d ? SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", pins))
-                               : SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 4), SKEIN_PAIR("size", 3, 2), SKEIN_TEXT("pins", pins)),
+                               : SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 3, 4), SKEIN_PAIR("size", 3, 2),
+                                                SKEIN_TEXT("pins", pins)),
                              NULL));
     char text[512];
     list_held(world, text, sizeof text);
@@ -709,7 +722,7 @@ static void pins_of_a_grid(void **state) {
     assert_pins(NULL, "4..6", "4 5 6 ");
     assert_pins(NULL, "0 7..7 9..-1", "0 7 9 10 11 ");
     assert_pins(NULL, "box -2 -1 -2  -1.4 1 2", "0 4 8 ");
-    assert_pins(NULL, "box -1.4 1 2  -2 -1 -2", "0 4 8 "); // corners in any order
+    assert_pins(NULL, "box -1.4 1 2  -2 -1 -2", "0 4 8 ");   // corners in any order
     assert_pins(NULL, "box -0.5 0 -1  0.5 0 0", "1 2 5 6 "); // its own border is inside
     assert_pins(NULL, "sphere 0.5 0 0  1.01", "2 5 6 7 10 ");
     assert_pins(NULL, "sphere 0 0 0 0.5", "5 6 ");
@@ -786,8 +799,10 @@ static void pins_of_a_mesh(void **state) {
     static const char *const words[] = {"corners", "border", "top edge", "left corners"};
     for (size_t i = 0; i < COUNT(words); i++)
         FAILS(world, SKEIN_ERROR_MESH, "closed",
-              skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", words[i])), NULL));
-    OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "23 22")), NULL));
+              skein_body_add(world, "cloth", &mesh,
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", words[i])), NULL));
+    OK(world, skein_body_add(world, "cloth", &mesh,
+                             SKEIN_SETTINGS(BY_SPRINGS, SKEIN_REAL("weld", 1e-6), SKEIN_TEXT("pins", "23 22")), NULL));
     skein_surface surface;
     OK(world, skein_body_surface(world, skein_object_at(world, SKEIN_BODY, 0), &surface));
     assert_int_equal(statistics_of(world).pinned_particles, 2);
@@ -809,7 +824,8 @@ static void assert_straight_tethers(const skein_world *world, size_t anchors) {
     const sk_limit *limit = tethers_of(world);
     assert_non_null(limit);
     assert_int_equal(limit->anchors, anchors);
-    assert_int_equal(limit->count, skein_particle_count(world) - statistics_of((skein_world *)(uintptr_t)world).pinned_particles);
+    assert_int_equal(limit->count,
+                     skein_particle_count(world) - statistics_of((skein_world *)(uintptr_t)world).pinned_particles);
     for (size_t e = 0; e < limit->count; e++) {
         const uint32_t *particle = limit->particle + e * (1 + anchors);
         for (size_t k = 1; k <= anchors; k++) {
@@ -831,7 +847,8 @@ static void tethers_of_a_flat_sheet_are_straight(void **state) {
         for (size_t t = 0; t < COUNT(turns); t++) {
             skein_world *world = new_world("xpbd", 1);
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 14, 19), SKEIN_PAIR("size", 1.3, 0.7), SKEIN_TEXT("pins", holds[i].pins),
+                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 14, 19),
+                                                    SKEIN_PAIR("size", 1.3, 0.7), SKEIN_TEXT("pins", holds[i].pins),
                                                     SKEIN_VEC3("rotation", turns[t][0], turns[t][1], turns[t][2])),
                                      NULL));
             assert_straight_tethers(world, holds[i].anchors);
@@ -857,11 +874,14 @@ static void tethers_to_an_edge_go_to_the_nearest_pin(void **state) {
         draft *d = upright(12, 10, kind == 2);
         if (kind) build(world, d, SKEIN_SETTINGS(BY_SPRINGS, SKEIN_TEXT("pins", "top edge")));
         else
-            OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 12, 10), SKEIN_TEXT("pins", "top edge")), NULL));
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 12, 10), SKEIN_TEXT("pins", "top edge")),
+                              NULL));
         assert_straight_tethers(world, 1);
         const sk_limit *limit = tethers_of(world);
-        for (size_t e = 0; e < limit->count; e++) assert_int_equal(limit->particle[2 * e] % 10, limit->particle[2 * e + 1]);
+        for (size_t e = 0; e < limit->count; e++)
+            assert_int_equal(limit->particle[2 * e] % 10, limit->particle[2 * e + 1]);
         skein_world_destroy(world);
         free(d);
     }
@@ -874,7 +894,8 @@ static void tethers_of_a_grid_go_to_the_nearest_of_many(void **state) {
     for (size_t t = 0; t < COUNT(sizes); t++) {
         skein_world *world = new_world("xpbd", 1);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 23, 17), SKEIN_PAIR("size", sizes[t][0], sizes[t][1]),
+                                 SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 23, 17),
+                                                SKEIN_PAIR("size", sizes[t][0], sizes[t][1]),
                                                 SKEIN_VEC3("rotation", 31, 12, -55),
                                                 SKEIN_TEXT("pins", "40 41 77 78 112 200 205 261 311 340")),
                                  NULL));
@@ -961,7 +982,8 @@ static void tethers_do_not_prefer_a_diagonal(void **state) {
     const sk_limit *limit = tethers_of(world);
     double length[2][SIDE * SIDE] = {{0}, {0}};
     for (size_t e = 0; e < limit->count; e++)
-        for (size_t k = 0; k < 2; k++) length[limit->particle[3 * e + 1 + k] ? 1 : 0][limit->particle[3 * e]] = (double)limit->length[2 * e + k];
+        for (size_t k = 0; k < 2; k++)
+            length[limit->particle[3 * e + 1 + k] ? 1 : 0][limit->particle[3 * e]] = (double)limit->length[2 * e + k];
     for (size_t i = 0; i < SIDE * SIDE; i++) {
         size_t mirrored = i / SIDE * SIDE + SIDE - 1 - i % SIDE;
         assert_near(length[0][i], length[1][mirrored], 1e-6);
@@ -1047,7 +1069,8 @@ static void spans_of_a_mesh_are_as_long_as_the_way(void **state) {
         p[0] = sin(turn) / acos(-1), p[1] = cos(turn) / acos(-1);
     }
     world = new_world("xpbd", 1);
-    build(world, rolled, SKEIN_SETTINGS(SKEIN_TEXT("pins", "0"), SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 30, 40, 50)));
+    build(world, rolled,
+          SKEIN_SETTINGS(SKEIN_TEXT("pins", "0"), SKEIN_REAL("scale", 2), SKEIN_VEC3("rotation", 30, 40, 50)));
     for (size_t k = 0; k < 3 * flat->vertices; k++) flat->positions[k] *= 2;
     check_spans(world, flat, 1.0 / RINGS, 0.01);
     skein_world_destroy(world);
@@ -1083,12 +1106,14 @@ static void stretch_bounds_are_kept(void **state) {
     for (size_t m = 0; m < COUNT(method_names); m++)
         for (int bound = 0; bound < 3; bound++) { // none, the limit, the tethers
             skein_world *world = new_world(method_names[m], 20);
-            OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "top edge"), SKEIN_VEC3("rotation", 90, 0, 0),
-                                                    SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
-                                                    SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", bound == 1 ? 0.03 : INFINITY),
-                                                    SKEIN_REAL("stretch.tether", bound == 2 ? 0.02 : INFINITY)),
-                                     NULL));
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(BY_SPRINGS, SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "top edge"),
+                                             SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_REAL("stretch.stiffness", 5),
+                                             SKEIN_REAL("shear.stiffness", 1), SKEIN_REAL("bend.stiffness", 0),
+                                             SKEIN_REAL("stretch.limit", bound == 1 ? 0.03 : INFINITY),
+                                             SKEIN_REAL("stretch.tether", bound == 2 ? 0.02 : INFINITY)),
+                              NULL));
             add_gravity(world);
             OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
             steps(world, 300, 1.0 / 90);
@@ -1128,9 +1153,10 @@ static void stiff_sheets_come_to_rest(void **state) {
 static skein_world *pulled_cell(const char *method, double out) {
     skein_world *world = new_world(method, 1);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 2), SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("density", 4),
-                                            SKEIN_REAL("shear.stiffness", 30), SKEIN_TEXT("shear.diagonals", "ties"),
-                                            SKEIN_REAL("bend.rigidity", 0)), NULL));
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 2), SKEIN_REAL("stretch.stiffness", 0),
+                                            SKEIN_REAL("density", 4), SKEIN_REAL("shear.stiffness", 30),
+                                            SKEIN_TEXT("shear.diagonals", "ties"), SKEIN_REAL("bend.rigidity", 0)),
+                             NULL));
     vec3 p = position_of(world, 3);
     place_particle(world, 3, p.x + out / sqrt(2), p.y, p.z + out / sqrt(2));
     return world;
@@ -1166,14 +1192,22 @@ static void diagonals_go_by_the_pins(void **state) {
         int side;
         const char *pins, *diagonals;
         bool ties;
-    } rows[] = {{33, "", "pins", false},           {33, "0", "pins", true},           {33, "0, 3", "pins", true},
-                {33, "0, 4", "pins", false},       {33, "top corners", "pins", false}, {33, "top corners", "ties", true},
-                {33, "0", "springs", false},       {3, "top edge", "pins", false},     {3, "4", "pins", true}};
+    } rows[] = {{33, "", "pins", false},
+                {33, "0", "pins", true},
+                {33, "0, 3", "pins", true},
+                {33, "0, 4", "pins", false},
+                {33, "top corners", "pins", false},
+                {33, "top corners", "ties", true},
+                {33, "0", "springs", false},
+                {3, "top edge", "pins", false},
+                {3, "4", "pins", true}};
     for (size_t i = 0; i < COUNT(rows); i++) {
         skein_world *world = new_world("xpbd", 1);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", rows[i].side, rows[i].side), SKEIN_TEXT("pins", rows[i].pins),
-                                                SKEIN_TEXT("shear.diagonals", rows[i].diagonals)), NULL));
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", rows[i].side, rows[i].side),
+                                                SKEIN_TEXT("pins", rows[i].pins),
+                                                SKEIN_TEXT("shear.diagonals", rows[i].diagonals)),
+                                 NULL));
         assert_near(share_of(world, "shear", 0, (uint32_t)rows[i].side + 1), rows[i].ties ? 2 : 1, 1e-4);
         skein_world_destroy(world);
     }

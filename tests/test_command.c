@@ -22,7 +22,8 @@ static void wrong_arguments_are_told(void **state) {
         {{"--frames"}, "skein: there is no command '--frames'; `skein --help` shows all\n"},
         {{"run"}, "skein run: which scene? " RUN_USAGE},
         {{"check"}, "skein check: which scene? usage: skein check SCENE... [--set PATH=VALUE]... [--json]\n"},
-        {{"explain", "--set", "a=b"}, "skein explain: which scene? usage: skein explain SCENE [--set PATH=VALUE]... [--device WHERE] [--unfused]\n"},
+        {{"explain", "--set", "a=b"},
+         "skein explain: which scene? usage: skein explain SCENE [--set PATH=VALUE]... [--device WHERE] [--unfused]\n"},
         {{"run", "a.json", "b.json"}, "skein run: 'b.json' is one argument too many; " RUN_USAGE},
         {{"run", "a.json", "--", "--no-progress"}, "skein run: '--no-progress' is one argument too many; " RUN_USAGE},
         {{"run", "a.json", "--frame", "3"},
@@ -97,8 +98,8 @@ static void help_is_there_when_asked_for(void **state) {
         assert_says(0, o.out, "", commands[c], "scenes/flag.json", "-h");
         outcome_free(&o);
     }
-    static const char *const options[] = {"--out FOLDER",     "--frames N", "--fps N", "--threads N",
-                                          "--set PATH=VALUE", "--no-progress",    "--help"};
+    static const char *const options[] = {"--out FOLDER",     "--frames N",    "--fps N", "--threads N",
+                                          "--set PATH=VALUE", "--no-progress", "--help"};
     outcome o = SKEIN("run", "--help");
     for (size_t i = 0; i < COUNT(options); i++) {
         char words[64];
@@ -229,7 +230,8 @@ static void shells_complete_every_option(void **state) {
         for (size_t k = 0; k < COUNT(options); k++) assert_contains(o.out, options[k]);
         for (const char *at = help.out; (at = strstr(at, "\n  ")) != NULL; at++) {
             char command[40] = "";
-            if (sscanf(at + 3, "%39[a-z]", command) == 1 && strcmp(command, "skein") != 0) assert_contains(o.out, command);
+            if (sscanf(at + 3, "%39[a-z]", command) == 1 && strcmp(command, "skein") != 0)
+                assert_contains(o.out, command);
         }
         snprintf(path, sizeof path, "%s", in_folder(shells[i]));
         write_text(path, o.out);
@@ -271,8 +273,8 @@ static void tables_are_there_for_programs(void **state) {
     outcome_free(&o);
     o = SKEIN("list", "gravity", "--json");
     root = json_loads(o.out, 0, NULL);
-    const json_t *field = json_array_get(
-        json_object_get(json_array_get(json_object_get(root, "forces"), 0), "fields"), 0);
+    const json_t *field =
+        json_array_get(json_object_get(json_array_get(json_object_get(root, "forces"), 0), "fields"), 0);
     assert_string_equal(text_of(field, "name"), "acceleration");
     assert_string_equal(text_of(field, "type"), "vec3");
     assert_string_equal(text_of(field, "unit"), "m/s2");
@@ -365,8 +367,8 @@ static void expect_kind(const char *text, const skein_kind *kind) {
 
 static void list_shows_every_kind_and_field(void **state) {
     (void)state;
-    static const char *const words[] = {"bodies",  "constraints", "forces",    "colliders",
-                                        "motions", "methods", "scene",       "exporters", "view"};
+    static const char *const words[] = {"bodies",  "constraints", "forces",    "colliders", "motions",
+                                        "methods", "scene",       "exporters", "view"};
     outcome all = SKEIN("list");
     assert_status(all, 0);
     assert_string_equal(all.err, "");
@@ -403,7 +405,8 @@ static void list_shows_what_is_taken(void **state) {
     (void)state;
     static const char *const refused[] = {"colliders", "inertia", "jump", "jump_turn", "jump_times"};
     char words[64];
-    outcome text = SKEIN("list", "attach"), json = SKEIN("list", "attach", "--json"), turn = SKEIN("list", "turn"), all = SKEIN("list", "motions");
+    outcome text = SKEIN("list", "attach"), json = SKEIN("list", "attach", "--json"), turn = SKEIN("list", "turn"),
+            all = SKEIN("list", "motions");
     for (size_t i = 0; i < COUNT(refused); i++) {
         snprintf(words, sizeof words, "\n    %s ", refused[i]);
         assert_null(strstr(text.out, words));
@@ -502,11 +505,20 @@ static void progress_is_shown(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
-        TEST(wrong_arguments_are_told),        TEST(help_is_there_when_asked_for),    TEST(check_counts_what_is_there),
-        TEST(check_takes_many_scenes), TEST(scenes_have_names), TEST(meshes_are_scenes),
-        TEST(scenes_come_from_standard_input), TEST(shells_complete_every_option),
+        TEST(wrong_arguments_are_told),
+        TEST(help_is_there_when_asked_for),
+        TEST(check_counts_what_is_there),
+        TEST(check_takes_many_scenes),
+        TEST(scenes_have_names),
+        TEST(meshes_are_scenes),
+        TEST(scenes_come_from_standard_input),
+        TEST(shells_complete_every_option),
         TEST(tables_are_there_for_programs),
-        TEST(explain_shows_every_kind_of_row), TEST(list_shows_every_kind_and_field), TEST(list_shows_what_is_taken), TEST(list_tells_of_scenes), TEST(progress_is_shown),
+        TEST(explain_shows_every_kind_of_row),
+        TEST(list_shows_every_kind_and_field),
+        TEST(list_shows_what_is_taken),
+        TEST(list_tells_of_scenes),
+        TEST(progress_is_shown),
     };
     return cmocka_run_group_tests_name("command", tests, NULL, NULL);
 }

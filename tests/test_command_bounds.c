@@ -32,12 +32,12 @@ static void assert_checks(int status, const char *mesh, const char *option, cons
 
 static void a_scene_reads_only_beside_itself(void **state) {
     (void)state;
-    static const char *const folders[] = {"project", "project/scenes", "project/scenes/in", "project/meshes", "outside",
-                                          "outside/deep", "elsewhere"};
+    static const char *const folders[] = {"project", "project/scenes", "project/scenes/in", "project/meshes",
+                                          "outside", "outside/deep",   "elsewhere"};
     char path[600], named[900], link[600];
     for (size_t i = 0; i < COUNT(folders); i++) assert_int_equal(mkdir(in_folder(folders[i]), 0777), 0);
     static const char *const meshes[] = {"project/scenes/a.obj", "project/scenes/in/a.obj", "project/meshes/a.obj",
-                                         "project/a.obj", "outside/deep/a.obj", "elsewhere/a.obj"};
+                                         "project/a.obj",        "outside/deep/a.obj",      "elsewhere/a.obj"};
     for (size_t i = 0; i < COUNT(meshes); i++) write_mesh(in_folder(meshes[i]));
     snprintf(link, sizeof link, "%s", in_folder("project/scenes/link.obj"));
     assert_int_equal(symlink("../../outside/deep/a.obj", link), 0);
@@ -61,8 +61,10 @@ static void a_scene_reads_only_beside_itself(void **state) {
     snprintf(named, sizeof named, "bodies.0.mesh=%s", path);
     assert_checks(0, "a.obj", "--set", named);
     // images and caches, too
-    snprintf(named, sizeof named, "{'bodies': [{'type': 'cloth', 'grid': [3, 3], 'pins': 'corners'}], 'motions': [{'type': 'cache', 'file': '%s'}]}",
-             path);
+    snprintf(
+        named, sizeof named,
+        "{'bodies': [{'type': 'cloth', 'grid': [3, 3], 'pins': 'corners'}], 'motions': [{'type': 'cache', 'file': '%s'}]}",
+        path);
     write_scene(in_folder("project/b.json"), named);
     outcome o = SKEIN("check", in_folder("project/b.json"));
     assert_status(o, 2);
@@ -149,8 +151,8 @@ static void a_locale_changes_no_number(void **state) {
     outcome o = SKEIN("run", s, "--set", pins, "--out", in_folder("plain"), "--set", outputs, "--quiet");
     assert_status(o, 0);
     outcome_free(&o);
-    o = SKEIN_IN((surroundings){.fail = "locale"}, "run", s, "--set", pins, "--out", in_folder("german"), "--set", outputs,
-                 "--quiet");
+    o = SKEIN_IN((surroundings){.fail = "locale"}, "run", s, "--set", pins, "--out", in_folder("german"), "--set",
+                 outputs, "--quiet");
     assert_status(o, 0);
     outcome_free(&o);
     for (size_t i = 0; i < COUNT(names); i++) {
@@ -172,10 +174,8 @@ static void a_locale_changes_no_number(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
-        TEST(a_scene_reads_only_beside_itself),
-        TEST(a_run_goes_on_with_what_was_allowed),
-        TEST(a_run_ends_when_its_time_is_up),
-        TEST(memory_has_a_bound),
+        TEST(a_scene_reads_only_beside_itself), TEST(a_run_goes_on_with_what_was_allowed),
+        TEST(a_run_ends_when_its_time_is_up),   TEST(memory_has_a_bound),
         TEST(a_locale_changes_no_number),
     };
     return cmocka_run_group_tests_name("command bounds", tests, NULL, NULL);

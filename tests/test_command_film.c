@@ -123,8 +123,9 @@ static void the_exporter_makes_a_film_where_it_is_asked_for(void **state) {
     assert_false(exists(in_folder("plain/plain.mp4")));
     assert_true(exists(in_folder("plain/plain.png")));
     outcome_free(&o);
-    o = SKEIN_IN((surroundings){.file_limit = 1500}, "run", s, "--out", in_folder("full"), "--frames", "130", "--no-progress",
-                 "--set", "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"quality\":100}]");
+    o = SKEIN_IN((surroundings){.file_limit = 1500}, "run", s, "--out", in_folder("full"), "--frames", "130",
+                 "--no-progress", "--set",
+                 "output=[{\"type\":\"film\",\"size\":[64,36],\"samples\":1,\"quality\":100}]");
     assert_status(o, 1);
     assert_contains(o.err, "my_scene_1.mp4: cannot write: it grew over the limit for a file's size\n");
     assert_false(exists(in_folder("full/my_scene_1.mp4"))); // what there is has a name that says so

@@ -37,10 +37,11 @@ static long samples_of(const char *path) {
     bool whole = true;
     for (int i = 0; i < 3 && whole; i++) {
         hid_t set = H5Dopen2(file, names[i], H5P_DEFAULT), space = set < 0 ? -1 : H5Dget_space(set);
-        whole = space >= 0 && H5Sget_simple_extent_dims(space, size[i], NULL) == (i ? 3 : 1) && size[i][0] == size[0][0];
+        whole =
+            space >= 0 && H5Sget_simple_extent_dims(space, size[i], NULL) == (i ? 3 : 1) && size[i][0] == size[0][0];
         numbers[i] = whole ? malloc(((size_t)H5Sget_simple_extent_npoints(space) + 1) * sizeof(double)) : NULL;
-        whole &= numbers[i] && (!size[i][0] ||
-                                H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers[i]) >= 0);
+        whole &= numbers[i] &&
+                 (!size[i][0] || H5Dread(set, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, numbers[i]) >= 0);
         if (space >= 0) H5Sclose(space);
         if (set >= 0) H5Dclose(set);
     }

@@ -12,9 +12,10 @@ static int frames = 160;
 /* mpirun's words, and the command's: in `said`. Returns the exit status. */
 static int run_ranks(int ranks, const char *arguments, char **said) {
     char command[2400];
-    snprintf(command, sizeof command,
-             "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 1500 %s --oversubscribe --mca mpi_yield_when_idle 1 -n %d %s run %s >%s 2>&1",
-             SKEIN_MPIRUN, ranks, SKEIN_COMMAND, arguments, in_folder("said"));
+    snprintf(
+        command, sizeof command,
+        "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 timeout 1500 %s --oversubscribe --mca mpi_yield_when_idle 1 -n %d %s run %s >%s 2>&1",
+        SKEIN_MPIRUN, ranks, SKEIN_COMMAND, arguments, in_folder("said"));
     int status = system(command);
     *said = read_text(in_folder("said"));
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -41,11 +42,14 @@ static const char *flock(void) {
     static char path[512];
     char text[1200];
     snprintf(path, sizeof path, "%s/flock.json", folder);
-    snprintf(text, sizeof text, "{'frames': %d, 'fps': 60, 'method': {'type': 'symplectic_euler', 'substeps': 1}, 'bodies': [{'type': "
-                      "'flock', 'count': 700, 'spread': [60, 14, 40], 'speed': 3, 'swirl': 6}], 'forces': [{'type': "
-                      "'flocking', 'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'attraction', 'strength': 4}, "
-                      "{'type': 'speed_limit', 'limit': 9}], 'colliders': [{'type': 'plane', 'offset': -6, 'motion.velocity': [0, 0.3, 0], "
-                      "'restitution': 0.8}], 'output': []}", frames);
+    snprintf(
+        text, sizeof text,
+        "{'frames': %d, 'fps': 60, 'method': {'type': 'symplectic_euler', 'substeps': 1}, 'bodies': [{'type': "
+        "'flock', 'count': 700, 'spread': [60, 14, 40], 'speed': 3, 'swirl': 6}], 'forces': [{'type': "
+        "'flocking', 'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'attraction', 'strength': 4}, "
+        "{'type': 'speed_limit', 'limit': 9}], 'colliders': [{'type': 'plane', 'offset': -6, 'motion.velocity': [0, 0.3, 0], "
+        "'restitution': 0.8}], 'output': []}",
+        frames);
     write_scene(path, text);
     return path;
 }
@@ -100,12 +104,13 @@ static void rules_and_methods_have_it_too(void **state) {
     char text[2000], scene[512], arguments[1200], *said;
     snprintf(scene, sizeof scene, "%s/rules.json", folder);
     for (size_t i = 0; i < COUNT(methods); i++) {
-        snprintf(text, sizeof text,
-                 "{'frames': 40, 'method': %s, 'bodies': [{'type': 'flock', 'side': 20, 'spread': [12, 6, 9], 'mass': 0.2}], "
-                 "'forces': [{'type': 'flocking', 'separation': 0.6, 'alignment': 0.5, 'cohesion': 0.9, 'view': 270, "
-                 "'nearest': 7}, {'type': 'separation', 'radius': 0.4, 'strength': 3}, {'type': 'turn_limit'}, {'type': "
-                 "'gravity'}, {'type': 'drag'}], 'colliders': [{'type': 'sphere', 'radius': 2}], 'output': ['obj']}",
-                 methods[i]);
+        snprintf(
+            text, sizeof text,
+            "{'frames': 40, 'method': %s, 'bodies': [{'type': 'flock', 'side': 20, 'spread': [12, 6, 9], 'mass': 0.2}], "
+            "'forces': [{'type': 'flocking', 'separation': 0.6, 'alignment': 0.5, 'cohesion': 0.9, 'view': 270, "
+            "'nearest': 7}, {'type': 'separation', 'radius': 0.4, 'strength': 3}, {'type': 'turn_limit'}, {'type': "
+            "'gravity'}, {'type': 'drag'}], 'colliders': [{'type': 'sphere', 'radius': 2}], 'output': ['obj']}",
+            methods[i]);
         write_scene(scene, text);
         outcome o = SKEIN("run", scene, "--out", in_folder("rules"), "--quiet");
         assert_status(o, 0);
@@ -144,36 +149,38 @@ static void check_bodies(const char *name, const char *text, int whole_bodies) {
     }
 }
 
-#define CLOTHS                                                                                                            \
+#define CLOTHS \
     "{'type': 'cloth', 'name': 'net', 'grid': [14, 17], 'size': [12, 12], 'position': [0, 1, 0], 'pins': 'corners'}, "
 
 static void bodies_that_meet_nobody_are_dealt_to_ranks(void **state) {
     (void)state;
-    check_bodies("dealt",
-                 "{'frames': 30, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
-                 "{'type': 'cloth', 'name': 'sail', 'grid': [9, 21], 'position': [3, 2, 0], 'rotation': [20, 10, 0], 'pins': 'top "
-                 "edge'}, {'type': 'rope', 'pins': 'first'}, {'type': 'cloth', 'grid': [8, 9], 'position': [9, 2, 0], "
-                 "'stretch.limit': 0.05, 'stretch.tether': 0.02, 'pins': 'corners'}], 'motions': [{'type': 'turn', 'on': 'sail', "
-                 "'axis': [0, 1, 0], 'speed': 1, 'centre': [3, 2, 0]}], 'forces': [{'type': 'gravity'}, {'type': 'surface_wind', 'velocity': [3, 0, "
-                 "1]}], 'colliders': [{'type': 'plane', 'offset': -0.2}], 'output': []}",
-                 4);
+    check_bodies(
+        "dealt",
+        "{'frames': 30, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
+        "{'type': 'cloth', 'name': 'sail', 'grid': [9, 21], 'position': [3, 2, 0], 'rotation': [20, 10, 0], 'pins': 'top "
+        "edge'}, {'type': 'rope', 'pins': 'first'}, {'type': 'cloth', 'grid': [8, 9], 'position': [9, 2, 0], "
+        "'stretch.limit': 0.05, 'stretch.tether': 0.02, 'pins': 'corners'}], 'motions': [{'type': 'turn', 'on': 'sail', "
+        "'axis': [0, 1, 0], 'speed': 1, 'centre': [3, 2, 0]}], 'forces': [{'type': 'gravity'}, {'type': 'surface_wind', 'velocity': [3, 0, "
+        "1]}], 'colliders': [{'type': 'plane', 'offset': -0.2}], 'output': []}",
+        4);
 }
 
 /* All look at each other: birds of two flocks, and a net and a rope that live on one rank each. */
 static void flocks_and_bodies_meet_across_ranks(void **state) {
     (void)state;
-    check_bodies("meet",
-                 "{'frames': 20, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
-                 "{'type': 'flock', 'name': 'a', 'count': 260, 'spread': [14, 6, 14], 'speed': 3, 'swirl': 6}, {'type': 'rope', "
-                 "'name': 'line', 'from': [-6, 2, 0], 'to': [6, 2, 0], 'pins': 'first'}, {'type': 'flock', 'name': 'b', 'count': "
-                 "150, 'spread': [10, 8, 12], 'speed': 5, 'swirl': -4}], 'forces': [{'type': 'flocking', 'on': 'a', "
-                 "'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'flocking', 'on': 'b', 'neighbours': 'a', "
-                 "'separation': 2, 'alignment': 1, 'cohesion': 2}, {'type': 'flocking', 'on': 'a', 'neighbours': 'net', "
-                 "'separation': 2, 'alignment': 0, 'cohesion': 0, 'strength': 3}, {'type': 'flocking', 'on': 'net', "
-                 "'neighbours': 'b', 'separation': 2, 'alignment': 1, 'cohesion': 0}, {'type': 'separation', 'radius': 1.5, "
-                 "'strength': 0.02}, {'type': 'attraction', 'on': 'a', 'strength': 4}, {'type': 'attraction', 'on': 'b', 'strength': 4}, {'type': 'gravity', 'on': 'net, "
-                 "line'}], 'output': []}",
-                 2);
+    check_bodies(
+        "meet",
+        "{'frames': 20, 'method': {'type': 'xpbd', 'substeps': 4}, 'bodies': [" CLOTHS
+        "{'type': 'flock', 'name': 'a', 'count': 260, 'spread': [14, 6, 14], 'speed': 3, 'swirl': 6}, {'type': 'rope', "
+        "'name': 'line', 'from': [-6, 2, 0], 'to': [6, 2, 0], 'pins': 'first'}, {'type': 'flock', 'name': 'b', 'count': "
+        "150, 'spread': [10, 8, 12], 'speed': 5, 'swirl': -4}], 'forces': [{'type': 'flocking', 'on': 'a', "
+        "'separation': 2, 'alignment': 1.5, 'cohesion': 2}, {'type': 'flocking', 'on': 'b', 'neighbours': 'a', "
+        "'separation': 2, 'alignment': 1, 'cohesion': 2}, {'type': 'flocking', 'on': 'a', 'neighbours': 'net', "
+        "'separation': 2, 'alignment': 0, 'cohesion': 0, 'strength': 3}, {'type': 'flocking', 'on': 'net', "
+        "'neighbours': 'b', 'separation': 2, 'alignment': 1, 'cohesion': 0}, {'type': 'separation', 'radius': 1.5, "
+        "'strength': 0.02}, {'type': 'attraction', 'on': 'a', 'strength': 4}, {'type': 'attraction', 'on': 'b', 'strength': 4}, {'type': 'gravity', 'on': 'net, "
+        "line'}], 'output': []}",
+        2);
 }
 
 /* A flock looks at itself, and then at a cloth that lives elsewhere: what comes for the first look must leave the cloth's places, which the
@@ -183,12 +190,13 @@ static void one_look_after_another_has_it_too(void **state) {
     static const char *const methods[] = {"method.substeps=3", "method={\"type\":\"symplectic_euler\",\"substeps\":30}"};
     for (size_t i = 0; i < COUNT(methods); i++) {
         char arguments[1200], *said;
-        outcome o = SKEIN("run", "scenes/gulls.json", "--frames", "3", "--set", "output=[]", "--set", methods[i], "--out",
-                          in_folder("looks"), "--quiet");
+        outcome o = SKEIN("run", "scenes/gulls.json", "--frames", "3", "--set", "output=[]", "--set", methods[i],
+                          "--out", in_folder("looks"), "--quiet");
         assert_status(o, 0);
         outcome_free(&o);
-        snprintf(arguments, sizeof arguments, "scenes/gulls.json --frames 3 --set 'output=[]' --set '%s' --threads 1 --quiet --out %s",
-                 methods[i], in_folder("looks_by_ranks"));
+        snprintf(arguments, sizeof arguments,
+                 "scenes/gulls.json --frames 3 --set 'output=[]' --set '%s' --threads 1 --quiet --out %s", methods[i],
+                 in_folder("looks_by_ranks"));
         for (int ranks = 2; ranks <= 3; ranks++) {
             if (run_ranks(ranks, arguments, &said)) fail_msg("%s", said);
             free(said);
@@ -245,8 +253,8 @@ static void read_item(const char *folder_of_index, const char *item, size_t size
 static void ranks_write_their_own(void **state) {
     (void)state;
     char arguments[1400], *said;
-    snprintf(arguments, sizeof arguments, "%s --frames 20 --set 'output=[\"obj\"]' --out %s --parts --no-progress", flock(),
-             in_folder("own"));
+    snprintf(arguments, sizeof arguments, "%s --frames 20 --set 'output=[\"obj\"]' --out %s --parts --no-progress",
+             flock(), in_folder("own"));
     if (run_ranks(3, arguments, &said)) fail_msg("%s", said);
     free(said);
     char own_folder[512];
@@ -258,7 +266,9 @@ static void ranks_write_their_own(void **state) {
     assert_int_equal(frames_there, 20);
     assert_contains(index, "</Xdmf>");
     for (char *line = mesh; line && written < 700; line = strchr(line, '\n'), line = line ? line + 1 : NULL)
-        if (sscanf(line, "v %lf %lf %lf", &as_written[written][0], &as_written[written][1], &as_written[written][2]) == 3) written++;
+        if (sscanf(line, "v %lf %lf %lf", &as_written[written][0], &as_written[written][1], &as_written[written][2]) ==
+            3)
+            written++;
     assert_int_equal(written, 700);
     char *last = index;
     for (char *at = index; (at = strstr(at, "<Time ")) != NULL; at++) last = at;
@@ -323,7 +333,8 @@ static void a_rank_that_dies_ends_the_run_and_another_number_goes_on(void **stat
 /* All that come along: each has one hash, or is refused, as these are. */
 static void every_scene_has_one_hash_or_is_refused(void **state) {
     (void)state;
-    static const char *const refused[] = {"cantilever", "funnel", "heap", "layers", "reef", "ribbons", "statue", "tables", "tear", "twist"};
+    static const char *const refused[] = {"cantilever", "funnel", "heap",   "layers", "reef",
+                                          "ribbons",    "statue", "tables", "tear",   "twist"};
     DIR *scenes = opendir("scenes");
     int shared = 0;
     size_t said_no = 0, missing = 0; // the latter where no mesh was fetched: `make demo` does so
@@ -332,14 +343,17 @@ static void every_scene_has_one_hash_or_is_refused(void **state) {
         char name[200], arguments[1200], path[400], *said;
         size_t length = strlen(entry->d_name);
         if (length < 6 || length > 100 || strcmp(entry->d_name + length - 5, ".json") != 0) continue;
-        snprintf(name, sizeof name, "%.*s", (int)length - 5, entry->d_name), snprintf(path, sizeof path, "scenes/%s", entry->d_name);
+        snprintf(name, sizeof name, "%.*s", (int)length - 5, entry->d_name),
+            snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         outcome o = SKEIN("run", path, "--frames", "3", "--set", "output=[]", "--out", in_folder("scene"), "--quiet");
         bool there = o.status == 0;
-        if (!there && !strstr(o.err, "tools/fetch-mesh")) fail_msg("%s: %s", name, o.err); // it needs a mesh that does not come along
+        if (!there && !strstr(o.err, "tools/fetch-mesh"))
+            fail_msg("%s: %s", name, o.err); // it needs a mesh that does not come along
         outcome_free(&o);
         missing += !there;
         if (!there) continue;
-        snprintf(arguments, sizeof arguments, "%s --frames 3 --set 'output=[]' --threads 1 --quiet --out %s", path, in_folder("by_ranks"));
+        snprintf(arguments, sizeof arguments, "%s --frames 3 --set 'output=[]' --threads 1 --quiet --out %s", path,
+                 in_folder("by_ranks"));
         int status = run_ranks(3, arguments, &said);
         bool no = false;
         for (size_t i = 0; i < COUNT(refused); i++) no |= !strcmp(name, refused[i]);
@@ -361,8 +375,10 @@ static void memory_follows_own_birds(void **state) {
     json_int_t took[2];
     for (int i = 0; i < 2; i++) {
         char arguments[1200], *said;
-        snprintf(arguments, sizeof arguments, "scenes/birds.json --set bodies.0.side=0 --set bodies.0.count=400000 --set 'output=[]' "
-                 "--set 'bodies.0.spread=[80,80,1600]' --frames 2 --threads 1 --quiet --out %s", in_folder("memory"));
+        snprintf(arguments, sizeof arguments,
+                 "scenes/birds.json --set bodies.0.side=0 --set bodies.0.count=400000 --set 'output=[]' "
+                 "--set 'bodies.0.spread=[80,80,1600]' --frames 2 --threads 1 --quiet --out %s",
+                 in_folder("memory"));
         if (run_ranks(counts[i], arguments, &said)) fail_msg("%s", said);
         free(said);
         json_t *report = report_of(in_folder("memory"));

@@ -171,7 +171,8 @@ static void a_rolling_cube_stays_in_the_picture(void **state) {
 
     o = SKEIN("check", s, "--set", "view.camera.follow=ball");
     assert_status(o, 2);
-    assert_contains(o.err, "view.camera.follow: there is no body 'ball': expected a body's name, its number from 0, or \"all\"");
+    assert_contains(
+        o.err, "view.camera.follow: there is no body 'ball': expected a body's name, its number from 0, or \"all\"");
     outcome_free(&o);
     o = SKEIN("check", s, "--set", "view.camera.follow=true");
     assert_status(o, 2);
@@ -183,13 +184,16 @@ static void a_rolling_cube_stays_in_the_picture(void **state) {
 static void what_is_led_stays_in_the_film(void **state) {
     (void)state;
     const char *s = in_folder("led.json");
-    write_scene(s, "{ 'name': 'led', 'frames': 48, 'fps': 4, 'method': { 'type': 'xpbd', 'substeps': 20 }, 'view': { 'pattern': 'none' },"
-                   "  'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [8, 8], 'size': [1, 1], 'rotation': [90, 0, 0],"
-                   "                'position': [0, 1, 0.6], 'pins': 'top edge' } ],"
-                   "  'forces': [ { 'type': 'gravity' } ],"
-                   "  'motions': [ { 'type': 'keys', 'on': 'sheet', 'keys': [[0, 0, 0, 0], [12, 18, 0, 0]] } ],"
-                   "  'colliders': [ { 'type': 'sphere', 'radius': 0.5 } ] }");
-    outcome o = SKEIN("render", s, "-o", in_folder("led-%02d.png"), "--size", "640x360", "--samples", "1", "--no-progress");
+    write_scene(
+        s,
+        "{ 'name': 'led', 'frames': 48, 'fps': 4, 'method': { 'type': 'xpbd', 'substeps': 20 }, 'view': { 'pattern': 'none' },"
+        "  'bodies': [ { 'type': 'cloth', 'name': 'sheet', 'grid': [8, 8], 'size': [1, 1], 'rotation': [90, 0, 0],"
+        "                'position': [0, 1, 0.6], 'pins': 'top edge' } ],"
+        "  'forces': [ { 'type': 'gravity' } ],"
+        "  'motions': [ { 'type': 'keys', 'on': 'sheet', 'keys': [[0, 0, 0, 0], [12, 18, 0, 0]] } ],"
+        "  'colliders': [ { 'type': 'sphere', 'radius': 0.5 } ] }");
+    outcome o =
+        SKEIN("render", s, "-o", in_folder("led-%02d.png"), "--size", "640x360", "--samples", "1", "--no-progress");
     assert_status(o, 0);
     outcome_free(&o);
     double first[2], middle[2];
@@ -206,8 +210,7 @@ static void wrong_arguments_are_told(void **state) {
     static const struct {
         const char *arguments[6], *words;
     } cases[] = {
-        {{"scenes/flag.json"},
-         "skein render: where to? -o film.mp4, .webm or .gif; -o picture.png; -o many-%04d.png\n"},
+        {{"scenes/flag.json"}, "skein render: where to? -o film.mp4, .webm or .gif; -o picture.png; -o many-%04d.png\n"},
         {{"-o", "a.png"}, "skein render: which scene? usage: skein render SCENE -o FILE [options]\n"},
         {{"scenes/flag.json", "-o"}, "skein render: -o takes FILE\n"},
         {{"scenes/flag.json", "--output", "a.png"},
@@ -247,9 +250,9 @@ static void wrong_arguments_are_told(void **state) {
 }
 
 static void help_teaches(void **state) {
-    static const char *const options[] = {"-o FILE",     "--out FILE", "--frames N",      "--frame N",
-                                          "--fps N",     "--size WxH", "--samples N",     "--quality N",
-                                          "--threads N", "--no-progress",    "--set PATH=VALUE"};
+    static const char *const options[] = {"-o FILE",     "--out FILE",    "--frames N",      "--frame N",
+                                          "--fps N",     "--size WxH",    "--samples N",     "--quality N",
+                                          "--threads N", "--no-progress", "--set PATH=VALUE"};
     (void)state;
     outcome o = SKEIN("render", "--help");
     assert_status(o, 0);
@@ -370,7 +373,8 @@ int main(void) {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
         TEST(a_picture_shows_the_frame_that_was_asked_for),
         TEST(sets_reach_the_picture),
-        TEST(numbered_pictures_show_frame_by_frame), TEST(a_rolling_cube_stays_in_the_picture),
+        TEST(numbered_pictures_show_frame_by_frame),
+        TEST(a_rolling_cube_stays_in_the_picture),
         TEST(what_is_led_stays_in_the_film),
         TEST(wrong_arguments_are_told),
         TEST(help_teaches),

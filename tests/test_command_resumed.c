@@ -24,7 +24,8 @@ static const char *swinging(void) {
 #ifdef SKEIN_HDF5
         ", 'hdf5'"
 #endif
-        "%s]}", draws ? ", {'type': 'png', 'size': [64, 36]}, {'type': 'film', 'format': 'gif', 'size': [64, 36]}" : "");
+        "%s]}",
+        draws ? ", {'type': 'png', 'size': [64, 36]}, {'type': 'film', 'format': 'gif', 'size': [64, 36]}" : "");
     write_scene(path, text);
     return path;
 }

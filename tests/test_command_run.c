@@ -103,7 +103,8 @@ static bool can_draw(void) {
 
 /* A mesh of a scene's first body or of a collider that is not there, as the scene calls it; else NULL. */
 static const char *missing_mesh(json_t *scene) {
-    json_t *body = json_array_get(json_object_get(scene, "bodies"), 0), *colliders = json_object_get(scene, "colliders");
+    json_t *body = json_array_get(json_object_get(scene, "bodies"), 0),
+           *colliders = json_object_get(scene, "colliders");
     for (size_t i = 0; i <= json_array_size(colliders); i++) {
         const char *mesh = json_string_value(json_object_get(i ? json_array_get(colliders, i - 1) : body, "mesh"));
         char path[600];
@@ -134,10 +135,11 @@ static void run_scene(const char *path, bool draws) {
     // a mesh has nothing to be made small: what is set in its place has no effect
     const char *output = draws ? "output=[\"obj\", \"pc2\", { \"type\": \"png\", \"size\": [64, 48], \"samples\": 1 }]"
                                : "output=[\"pc2\", \"obj\"]";
-    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set", output, "--set",
-                      mesh ? "skein=1" : "bodies.0.grid=[7,9]");
+    outcome o = SKEIN("run", path, "--out", in_folder("out"), "--frames", "3", "--no-progress", "--set", output,
+                      "--set", mesh ? "skein=1" : "bodies.0.grid=[7,9]");
     if (strstr(path, "cape")) assert_contains(o.err, "comes out at its recovery"); // which begins inside on purpose
-    else if (strstr(path, "statue")) assert_contains(o.err, "the field may miss what is thinner"); // fingers: make demo fetches it
+    else if (strstr(path, "statue"))
+        assert_contains(o.err, "the field may miss what is thinner"); // fingers: make demo fetches it
     else assert_string_equal(o.err, "");
     assert_status(o, 0);
 
@@ -399,10 +401,11 @@ static void a_start_inside_a_collider_is_told(void **state) {
 static void a_start_in_each_other_is_told(void **state) {
     (void)state;
     const char *path = in_folder("crossed.json");
-    write_text(path, "{\"skein\": 1, \"frames\": 60, \"bodies\": ["
-                     "{\"type\": \"cloth\", \"name\": \"a\", \"grid\": [20, 20], \"size\": [0.3, 0.3]},"
-                     "{\"type\": \"cloth\", \"name\": \"b\", \"grid\": [19, 19], \"size\": [0.3, 0.3],"
-                     " \"position\": [0.21, 0, 0.19], \"rotation\": [20, 10, 30]}], \"forces\": [{\"type\": \"contact\"}]}");
+    write_text(path,
+               "{\"skein\": 1, \"frames\": 60, \"bodies\": ["
+               "{\"type\": \"cloth\", \"name\": \"a\", \"grid\": [20, 20], \"size\": [0.3, 0.3]},"
+               "{\"type\": \"cloth\", \"name\": \"b\", \"grid\": [19, 19], \"size\": [0.3, 0.3],"
+               " \"position\": [0.21, 0, 0.19], \"rotation\": [20, 10, 30]}], \"forces\": [{\"type\": \"contact\"}]}");
     outcome o = SKEIN("check", path);
     assert_status(o, 0);
     assert_contains(o.err, "edges go through faces at the start: contact leads surfaces apart at its recovery");
@@ -418,8 +421,8 @@ static void a_start_in_each_other_is_told(void **state) {
 static void an_end_beyond_bounds_is_no_success(void **state) {
     (void)state;
     outcome o = SKEIN("run", "hanging", "--set", "method.type=symplectic_euler", "--set", "bodies.0.grid=9 9", "--set",
-                      "method.substeps=1", "--set", "bodies.0.stretch.stiffness=2e5", "--frames", "40",
-                      "--no-progress", "--out", in_folder("out"), "--set", "output=[]");
+                      "method.substeps=1", "--set", "bodies.0.stretch.stiffness=2e5", "--frames", "40", "--no-progress",
+                      "--out", in_folder("out"), "--set", "output=[]");
     assert_status(o, 1);
     assert_contains(o.err, "warning: scenes/hanging.json: symplectic_euler is stable with substeps of ");
     const char *remedy = strstr(o.err, "set method.substeps to ");
@@ -545,8 +548,8 @@ static void files_of_one_run_have_different_names(void **state) {
     }
     hash_of(SKEIN("run", s, "--out", in_folder("out"), "--log", in_folder("out/log.csv")));
     assert_true(exists(in_folder("out/log.csv")) && exists(in_folder("out/report.json")));
-    assert_says(2, "", "skein run: --out -: a run writes many files into a folder; --json prints its report\n", "run", s,
-                "--out", "-");
+    assert_says(2, "", "skein run: --out -: a run writes many files into a folder; --json prints its report\n", "run",
+                s, "--out", "-");
 }
 
 /* The farthest that a point of two caches is apart in their last samples. */
@@ -580,17 +583,21 @@ static void a_cache_holds_what_is_free(void **state) {
     static const struct {
         const char *says;
         double most;
-    } rows[] = {{"\"max_distance\": 0.1", 0.1}, {"\"max_distance\": 0.1, \"backstop\": 0.02, \"backstop_radius\": 20", 0.1}, {"\"pull\": 1000", 0.01}};
+    } rows[] = {{"\"max_distance\": 0.1", 0.1},
+                {"\"max_distance\": 0.1, \"backstop\": 0.02, \"backstop_radius\": 20", 0.1},
+                {"\"pull\": 1000", 0.01}};
     for (size_t i = 0; i < COUNT(rows); i++) {
         char motion[300];
         snprintf(motion, sizeof motion, "motions=[{\"type\": \"cache\", \"file\": \"led/t.pc2\", %s}]", rows[i].says);
-        hash_of(SKEIN("run", s, "--out", in_folder("held"), "--set", motion, "--set", "forces.0.acceleration=[0,-9.81,0]"));
+        hash_of(
+            SKEIN("run", s, "--out", in_folder("held"), "--set", motion, "--set", "forces.0.acceleration=[0,-9.81,0]"));
         snprintf(free_fall, sizeof free_fall, "%s", in_folder("held/t.pc2"));
         double far = farthest_apart(led, free_fall);
         if (i == 0) assert_true(fabs(far - rows[i].most) < 1e-4);
         assert_true(far < rows[i].most + 1e-4);
     }
-    outcome o = SKEIN("run", s, "--out", in_folder("held"), "--set", "motions=[{\"type\": \"cache\", \"file\": \"led/t.pc2\"}]");
+    outcome o = SKEIN("run", s, "--out", in_folder("held"), "--set",
+                      "motions=[{\"type\": \"cache\", \"file\": \"led/t.pc2\"}]");
     assert_status(o, 2);
     assert_contains(o.err, "the body has no pins that a cache could lead");
     outcome_free(&o);
@@ -605,8 +612,10 @@ int main(void) {
         TEST(a_cache_holds_what_is_free),
         TEST(a_start_inside_a_collider_is_told),
         TEST(a_start_in_each_other_is_told),
-        TEST(an_end_beyond_bounds_is_no_success), TEST(energy_from_nowhere_is_no_success),
-        TEST(what_was_not_solved_is_told), TEST(a_run_says_as_much_as_it_is_asked_to),
+        TEST(an_end_beyond_bounds_is_no_success),
+        TEST(energy_from_nowhere_is_no_success),
+        TEST(what_was_not_solved_is_told),
+        TEST(a_run_says_as_much_as_it_is_asked_to),
         TEST(files_of_one_run_have_different_names),
         TEST(frames_and_their_rate_can_be_told),
         TEST(a_log_has_a_line_a_step),

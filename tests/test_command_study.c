@@ -14,12 +14,13 @@ enum { ROWS = 24 };
 static const char *swings(void) {
     static char path[512];
     snprintf(path, sizeof path, "%s/swings.json", folder);
-    write_scene(path,
-                "{'study': 1, 'scene': {'frames': 40, 'bodies': [{'type': 'cloth', 'name': 'sheet', 'grid': [12, 12], 'pins': "
-                "'left edge', 'stretch': {'stiffness': 1000}}], 'forces': [{'type': 'gravity'}], "
-                "'output': ['obj']}, 'vary': {'bodies.sheet.density': {'from': 0.1, 'to': 0.6, 'count': 6}, "
-                "'method.type': ['xpbd', 'rk4'], 'bodies.sheet.position': [[0, 0, 0], [0, 1, 0]]}, 'measure': ['lowest', "
-                "{'measure': 'kinetic_energy', 'over': 'most'}, 'max_stretch'], 'plot': {'show': ['lowest']}}");
+    write_scene(
+        path,
+        "{'study': 1, 'scene': {'frames': 40, 'bodies': [{'type': 'cloth', 'name': 'sheet', 'grid': [12, 12], 'pins': "
+        "'left edge', 'stretch': {'stiffness': 1000}}], 'forces': [{'type': 'gravity'}], "
+        "'output': ['obj']}, 'vary': {'bodies.sheet.density': {'from': 0.1, 'to': 0.6, 'count': 6}, "
+        "'method.type': ['xpbd', 'rk4'], 'bodies.sheet.position': [[0, 0, 0], [0, 1, 0]]}, 'measure': ['lowest', "
+        "{'measure': 'kinetic_energy', 'over': 'most'}, 'max_stretch'], 'plot': {'show': ['lowest']}}");
     return path;
 }
 
@@ -28,8 +29,10 @@ static void check_same_file(const char *one, const char *other, const char *name
     snprintf(a, sizeof a, "%s/%s", one, name), snprintf(b, sizeof b, "%s/%s", other, name);
     io_bytes x, y;
     skein_error error;
-    if (io_file_read(a, 1 << 28, &x, &error) || io_file_read(b, 1 << 28, &y, &error)) fail_msg("%s: %s", error.where, error.message);
-    if (x.size != y.size || memcmp(x.data, y.data, x.size) != 0) fail_msg("%s differs from %s:\n%s\n%s", b, a, y.data, x.data);
+    if (io_file_read(a, 1 << 28, &x, &error) || io_file_read(b, 1 << 28, &y, &error))
+        fail_msg("%s: %s", error.where, error.message);
+    if (x.size != y.size || memcmp(x.data, y.data, x.size) != 0)
+        fail_msg("%s differs from %s:\n%s\n%s", b, a, y.data, x.data);
     io_bytes_free(&x), io_bytes_free(&y);
 }
 
@@ -90,7 +93,8 @@ static void a_row_is_done_again_by_its_command(void **state) {
         if (strcmp(outcome_of, "blew up") == 0) assert_string_equal(lowest, "nan");
         if (row % 5 != 3 || !is_good) continue;
         assert_int_equal(strncmp(out, "skein run scene.json --set ", 27), 0);
-        snprintf(command, sizeof command, "cd %s && %s%s --json --quiet >../again.json", whole(), SKEIN_COMMAND, out + 5);
+        snprintf(command, sizeof command, "cd %s && %s%s --json --quiet >../again.json", whole(), SKEIN_COMMAND,
+                 out + 5);
         assert_int_equal(system(command), 0);
         json_t *report = read_report(in_folder("again.json"));
         assert_string_equal(text_of(report, "state_hash"), hash);
@@ -125,8 +129,9 @@ static void a_plot_shows_the_rows(void **state) {
 static void a_map_keeps_the_cells_of_rows_that_failed(void **state) {
     (void)state;
     char path[700];
-    write_scene(in_folder("map.json"), "{'study': 1, 'scene': {'frames': 2, 'bodies': [{'type': 'rope', 'count': 5}]}, 'vary': "
-                                       "{'bodies.0.stretch.stiffness': [100, 1000, -5], 'method.substeps': [5, 0]}, 'measure': ['lowest']}");
+    write_scene(in_folder("map.json"),
+                "{'study': 1, 'scene': {'frames': 2, 'bodies': [{'type': 'rope', 'count': 5}]}, 'vary': "
+                "{'bodies.0.stretch.stiffness': [100, 1000, -5], 'method.substeps': [5, 0]}, 'measure': ['lowest']}");
     outcome o = SKEIN("study", in_folder("map.json"), "--out", in_folder("map"), "--quiet");
     assert_status(o, 1);
     assert_contains(o.err, "4 rows refused");
@@ -185,12 +190,13 @@ static void killed_studies_go_on(void **state) {
     snprintf(out, sizeof out, "%s", in_folder("broken"));
     for (int kills = 0; kills < 10; kills++) {
         long before = rows_size(out);
-        pid_t child = start_skein((surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "2", "--quiet", NULL});
+        pid_t child = start_skein(
+            (surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "2", "--quiet", NULL});
         if (kills % 3 != 2) wait_for_rows(out, before, child); // else at once
         nap(0.003 * kills);
         kill(child, SIGKILL);
         outcome o = finish_skein(child);
-        if (o.status == 0) kills = 10; // it was through
+        if (o.status == 0) kills = 10;                                         // it was through
         else if (o.status == 2 && strstr(o.err, "another process")) nap(0.05); // a row of the last one is still going
         else assert_int_equal(o.status, -SIGKILL);
         outcome_free(&o);
@@ -211,7 +217,8 @@ static void interrupted_studies_keep_their_rows(void **state) {
     (void)state;
     char out[512], path[700], row[700];
     snprintf(out, sizeof out, "%s", in_folder("stopped"));
-    pid_t child = start_skein((surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "1", "--no-progress", NULL});
+    pid_t child = start_skein((surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "1",
+                                                                       "--no-progress", NULL});
     wait_for_rows(out, 20, child);
     kill(child, SIGINT);
     outcome o = finish_skein(child);
@@ -252,7 +259,8 @@ static void a_crash_costs_one_row(void **state) {
 #ifdef __linux__
     char out[512], path[700], list[200], text[100] = "";
     snprintf(out, sizeof out, "%s", in_folder("crashed")), snprintf(path, sizeof path, "%s/table.csv", out);
-    pid_t child = start_skein((surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "1", "--no-progress", NULL});
+    pid_t child = start_skein((surroundings){0}, (const char *const[]){"study", swings(), "--out", out, "--jobs", "1",
+                                                                       "--no-progress", NULL});
     wait_for_rows(out, 20, child);
     snprintf(list, sizeof list, "/proc/%d/task/%d/children", (int)child, (int)child);
     FILE *children = fopen(list, "r");
@@ -309,7 +317,8 @@ static void the_hdf5_table_is_the_csv_table(void **state) {
     assert_true(file >= 0);
     H5G_info_t info;
     assert_true(H5Gget_info(file, &info) >= 0 && info.nlinks == 3 + 3 + 11); // more than the 15 of a recording
-    static const char *const numbers[] = {"row", "bodies.sheet.density", "lowest", "kinetic_energy_most", "time", "steps"};
+    static const char *const numbers[] = {"row",  "bodies.sheet.density", "lowest", "kinetic_energy_most", "time",
+                                          "steps"};
     for (size_t i = 0; i < COUNT(numbers); i++) {
         double got[ROWS];
         hid_t set = H5Dopen2(file, numbers[i], H5P_DEFAULT);
@@ -346,8 +355,11 @@ static void a_mesh_is_found_again(void **state) {
     assert_int_equal(mkdir(in_folder("elsewhere"), 0777), 0);
     snprintf(command, sizeof command, "cp %s/meshes/ball.obj %s", SKEIN_SOURCE_DIR, in_folder("elsewhere"));
     assert_int_equal(system(command), 0);
-    write_scene(in_folder("elsewhere/c.json"), "{'frames': 3, 'bodies': [{'type': 'cloth', 'mesh': 'ball.obj'}], 'forces': [{'type': 'gravity'}]}");
-    write_scene(in_folder("mesh.json"), "{'study': 1, 'scene': 'elsewhere/c.json', 'vary': {'bodies.0.density': [0.1, 0.2]}, 'measure': ['lowest']}");
+    write_scene(in_folder("elsewhere/c.json"),
+                "{'frames': 3, 'bodies': [{'type': 'cloth', 'mesh': 'ball.obj'}], 'forces': [{'type': 'gravity'}]}");
+    write_scene(
+        in_folder("mesh.json"),
+        "{'study': 1, 'scene': 'elsewhere/c.json', 'vary': {'bodies.0.density': [0.1, 0.2]}, 'measure': ['lowest']}");
     snprintf(table, sizeof table, "%s/table.csv", in_folder("mesh"));
     outcome o = SKEIN("study", in_folder("mesh.json"), "--out", in_folder("mesh"), "--quiet");
     assert_status(o, 0);
@@ -355,7 +367,8 @@ static void a_mesh_is_found_again(void **state) {
     char *csv = read_text(table);
     cell(csv, 1, "command", text);
     assert_contains(text, "elsewhere/ball.obj");
-    snprintf(command, sizeof command, "cd %s && %s%s --json --quiet >../mesh_again.json", in_folder("mesh"), SKEIN_COMMAND, text + 5);
+    snprintf(command, sizeof command, "cd %s && %s%s --json --quiet >../mesh_again.json", in_folder("mesh"),
+             SKEIN_COMMAND, text + 5);
     assert_int_equal(system(command), 0);
     json_t *report = read_report(in_folder("mesh_again.json"));
     cell(csv, 1, "state_hash", text);

@@ -12,11 +12,12 @@ static const char *ropes(void) {
     static char path[512];
     if (path[0]) return path;
     snprintf(path, sizeof path, "%s/ropes.json", folder);
-    write_scene(path,
-                "{'study': 1, 'scene': {'frames': 1200, 'bodies': [{'type': 'rope', 'name': 'line', 'count': 40, 'pins': 'first'}], "
-                "'forces': [{'type': 'gravity'}]}, 'vary': {'bodies.line.stretch.stiffness': {'from': 50, 'to': 5000, 'count': 20, "
-                "'scale': 'log'}, 'bodies.line.density': {'from': 0.1, 'to': 1, 'count': 10}}, 'measure': ['lowest', 'max_stretch', "
-                "{'measure': 'kinetic_energy', 'over': 'most'}]}");
+    write_scene(
+        path,
+        "{'study': 1, 'scene': {'frames': 1200, 'bodies': [{'type': 'rope', 'name': 'line', 'count': 40, 'pins': 'first'}], "
+        "'forces': [{'type': 'gravity'}]}, 'vary': {'bodies.line.stretch.stiffness': {'from': 50, 'to': 5000, 'count': 20, "
+        "'scale': 'log'}, 'bodies.line.density': {'from': 0.1, 'to': 1, 'count': 10}}, 'measure': ['lowest', 'max_stretch', "
+        "{'measure': 'kinetic_energy', 'over': 'most'}]}");
     return path;
 }
 
@@ -25,7 +26,8 @@ static void check_same_file(const char *one, const char *other, const char *name
     snprintf(a, sizeof a, "%s/%s", one, name), snprintf(b, sizeof b, "%s/%s", other, name);
     io_bytes x, y;
     skein_error error;
-    if (io_file_read(a, 1 << 28, &x, &error) || io_file_read(b, 1 << 28, &y, &error)) fail_msg("%s: %s", error.where, error.message);
+    if (io_file_read(a, 1 << 28, &x, &error) || io_file_read(b, 1 << 28, &y, &error))
+        fail_msg("%s: %s", error.where, error.message);
     assert_true(x.size > 1000);
     if (x.size != y.size || memcmp(x.data, y.data, x.size) != 0) fail_msg("%s differs from %s", b, a);
     io_bytes_free(&x), io_bytes_free(&y);
@@ -184,8 +186,8 @@ static pid_t start_ranks(const char *out) {
     setenv("OMPI_ALLOW_RUN_AS_ROOT", "1", 1), setenv("OMPI_ALLOW_RUN_AS_ROOT_CONFIRM", "1", 1);
     dup2(said, 1), dup2(said, 2);
     alarm(SKEIN_COMMAND_SECONDS);
-    execl(SKEIN_MPIRUN, SKEIN_MPIRUN, "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", "2", SKEIN_COMMAND, "study", ropes(), "--out", out,
-          "--quiet", (char *)NULL);
+    execl(SKEIN_MPIRUN, SKEIN_MPIRUN, "--oversubscribe", "--mca", "mpi_yield_when_idle", "1", "-n", "2", SKEIN_COMMAND,
+          "study", ropes(), "--out", out, "--quiet", (char *)NULL);
     _exit(127);
 }
 

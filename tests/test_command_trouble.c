@@ -167,7 +167,7 @@ static void an_interrupted_run_writes_what_it_has(void **state) {
 }
 
 /* A scene that blows up after some frames, with other folders to write to. */
-#define BLOW_UP(...)                                                                                      \
+#define BLOW_UP(...)                                                                                            \
     SKEIN("run", s, "--no-progress", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":1}", "--set", \
           "bodies.0.stretch={\"stiffness\":1e7,\"limit\":\"infinite\",\"tether\":\"infinite\"}", __VA_ARGS__)
 
@@ -175,9 +175,9 @@ static void an_interrupted_run_writes_what_it_has(void **state) {
 static void what_blows_up_at_once_is_reported(void **state) {
     (void)state;
     const char *s = tiny_scene();
-    outcome o = SKEIN("run", s, "--no-progress", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":30}", "--set",
-                      "bodies.0.stretch={\"stiffness\":1e12,\"limit\":\"infinite\",\"tether\":\"infinite\"}", "--frames", "9", "--out",
-                      in_folder("out/deeper"));
+    outcome o = SKEIN("run", s, "--no-progress", "--set", "method={\"type\":\"symplectic_euler\",\"substeps\":30}",
+                      "--set", "bodies.0.stretch={\"stiffness\":1e12,\"limit\":\"infinite\",\"tether\":\"infinite\"}",
+                      "--frames", "9", "--out", in_folder("out/deeper"));
     assert_status(o, 1);
     assert_contains(o.err, "blew up in frame 1: ");
     outcome_free(&o);
@@ -258,7 +258,8 @@ int main(void) {
         TEST(a_full_disk_leaves_nothing_half_written),
         TEST(output_that_cannot_be_printed_is_told),
         TEST(an_interrupted_run_writes_what_it_has),
-        TEST(what_blows_up_at_once_is_reported), TEST(a_run_that_blows_up_names_the_frame),
+        TEST(what_blows_up_at_once_is_reported),
+        TEST(a_run_that_blows_up_names_the_frame),
     };
     return cmocka_run_group_tests_name("command trouble", tests, NULL, NULL);
 }

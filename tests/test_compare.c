@@ -6,11 +6,12 @@
 /* A sheet that hangs, undamped, with springs that limit the step. */
 static const char *sheet_scene(void) {
     char *path = in_folder("sheet.json");
-    write_scene(path,
-                "{ 'frames': 6, 'output': [], 'method': { 'type': 'xpbd', 'substeps': 7, 'iterations': 2 },\n"
-                "  'bodies': [ { 'type': 'cloth', 'grid': [6, 6], 'pins': 'top corners',\n"
-                "    'stretch': { 'stiffness': 2000, 'tether': 'infinite' }, 'shear': { 'stiffness': 200 }, 'bend': { 'by': 'springs', 'stiffness': 2 } } ],\n"
-                "  'forces': [ { 'type': 'gravity' } ] }");
+    write_scene(
+        path,
+        "{ 'frames': 6, 'output': [], 'method': { 'type': 'xpbd', 'substeps': 7, 'iterations': 2 },\n"
+        "  'bodies': [ { 'type': 'cloth', 'grid': [6, 6], 'pins': 'top corners',\n"
+        "    'stretch': { 'stiffness': 2000, 'tether': 'infinite' }, 'shear': { 'stiffness': 200 }, 'bend': { 'by': 'springs', 'stiffness': 2 } } ],\n"
+        "  'forces': [ { 'type': 'gravity' } ] }");
     return path;
 }
 
@@ -69,10 +70,11 @@ static void runs_are_compared(void **state) {
 static void orders_are_found(void **state) {
     (void)state;
     char *path = in_folder("swing.json");
-    write_scene(path, "{ 'frames': 30, 'output': [], 'method': { 'type': 'rk4' },\n"
-                      "  'bodies': [ { 'type': 'rope', 'count': 2,\n"
-                      "    'to': [0.6, 0, 0], 'pins': 'first', 'stretch': { 'stiffness': 8, 'tether': 'infinite' } } ],\n"
-                      "  'forces': [ { 'type': 'gravity' } ] }");
+    write_scene(path,
+                "{ 'frames': 30, 'output': [], 'method': { 'type': 'rk4' },\n"
+                "  'bodies': [ { 'type': 'rope', 'count': 2,\n"
+                "    'to': [0.6, 0, 0], 'pins': 'first', 'stretch': { 'stiffness': 8, 'tether': 'infinite' } } ],\n"
+                "  'forces': [ { 'type': 'gravity' } ] }");
     outcome o = SKEIN("compare", path, "--methods", "symplectic_euler,midpoint,rk4", "--steps", "0.008,0.004", "--out",
                       in_folder("orders"));
     assert_status(o, 0);
@@ -178,7 +180,8 @@ static void substeps_that_rounding_swallows(void **state) {
         assert_status(o, 0);
         if (m == 2 || is_double) {
             // passes are no conjugate gradients: the scene's 2 are not carried over
-            assert_string_equal(o.err, m == 2 ? "skein: method.iterations is left out: backward_euler has no such field\n" : "");
+            assert_string_equal(
+                o.err, m == 2 ? "skein: method.iterations is left out: backward_euler has no such field\n" : "");
             outcome_free(&o);
             continue;
         }

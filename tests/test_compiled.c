@@ -80,10 +80,9 @@ static skein_world *make(const struct subject *s, const struct way *w, enum plac
     bool projects = !strcmp(w->method, "pbd") || !strcmp(w->method, "xpbd");
     skein_world *world = skein_world_create(NULL, NULL);
     assert_non_null(world);
-    OK(world,
-       skein_method_set(world, w->method,
-                        projects ? SKEIN_SETTINGS(SKEIN_REAL("substeps", 3), SKEIN_REAL("iterations", w->iterations))
-                                 : NULL));
+    OK(world, skein_method_set(
+                  world, w->method,
+                  projects ? SKEIN_SETTINGS(SKEIN_REAL("substeps", 3), SKEIN_REAL("iterations", w->iterations)) : NULL));
     add_gravity(world);
     uint32_t first = 0, count = PARTICLES;
     if (place == CLOTH) {

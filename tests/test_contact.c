@@ -7,10 +7,11 @@ static const double g = 9.81, slope = 20 * PI / 180;
 /* A plane through the origin, tilted so that down is along (cos a, -sin a, 0). */
 static skein_handle add_slope(skein_world *world, double angle, double friction, double restitution, double thickness) {
     skein_handle handle;
-    OK(world, skein_collider_add(world, "plane",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("normal", sin(angle), cos(angle), 0), SKEIN_REAL("friction", friction),
-                                                SKEIN_REAL("restitution", restitution), SKEIN_REAL("thickness", thickness)),
-                                 &handle));
+    OK(world, skein_collider_add(
+                  world, "plane",
+                  SKEIN_SETTINGS(SKEIN_VEC3("normal", sin(angle), cos(angle), 0), SKEIN_REAL("friction", friction),
+                                 SKEIN_REAL("restitution", restitution), SKEIN_REAL("thickness", thickness)),
+                  &handle));
     return handle;
 }
 
@@ -76,8 +77,8 @@ static skein_world *cloth_on_a_slope(const char *method, double friction) {
     add_gravity(world);
     add_slope(world, slope, friction, 0, 0.004);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 7, 6), SKEIN_PAIR("size", 0.5, 0.4), SKEIN_REAL("density", 0.3),
-                                            SKEIN_VEC3("rotation", 0, 0, -20),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 7, 6), SKEIN_PAIR("size", 0.5, 0.4),
+                                            SKEIN_REAL("density", 0.3), SKEIN_VEC3("rotation", 0, 0, -20),
                                             SKEIN_VEC3("position", 0.004 * sin(slope), 0.004 * cos(slope), 0),
                                             SKEIN_REAL("stretch.stiffness", 500), SKEIN_REAL("shear.stiffness", 100),
                                             SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 5)),
@@ -166,9 +167,9 @@ static void a_sphere_pushes_out_along_the_unit_normal(void **state) {
                                      NULL));
         add_particle(world, 1, 0, 1.4, 0);
         add_particle(world, 1, 0.3, 0.5, 0.4);
-        add_particle(world, 1, 0, 0.5, 0); // in the very centre: up is as good a way as any
+        add_particle(world, 1, 0, 0.5, 0);   // in the very centre: up is as good a way as any
         add_particle(world, 0, 0.1, 0.5, 0); // held: stays
-        add_particle(world, 1, 0, 1.6, 0); // outside: stays
+        add_particle(world, 1, 0, 1.6, 0);   // outside: stays
         steps(world, 1, 1.0 / 90);
         vec3 p = position_of(world, 0);
         assert_true(p.x == 0 && p.y == 1.5 && p.z == 0);
@@ -192,11 +193,14 @@ static void a_plane_pushes_out_to_its_thickness(void **state) {
                                                     SKEIN_REAL("thickness", 0.125), SKEIN_REAL("recovery", 1e6)),
                                      NULL));
         for (size_t i = 0; i < COUNT(heights); i++)
-            add_particle(world, 1, 3 + heights[i] * unit[0], 2 + heights[i] * unit[1], heights[i] * unit[2]); // (3, 2, 0) is on the level
+            add_particle(world, 1, 3 + heights[i] * unit[0], 2 + heights[i] * unit[1],
+                         heights[i] * unit[2]); // (3, 2, 0) is on the level
         steps(world, 1, 1.0 / 90);
         for (size_t i = 0; i < COUNT(heights); i++) {
             double height = fmax(heights[i], 0.875);
-            assert_under(length3(minus(position_of(world, i), (vec3){3 + height * unit[0], 2 + height * unit[1], height * unit[2]})), 10 * EPSILON);
+            assert_under(length3(minus(position_of(world, i),
+                                       (vec3){3 + height * unit[0], 2 + height * unit[1], height * unit[2]})),
+                         10 * EPSILON);
         }
         skein_world_destroy(world);
     }
@@ -291,7 +295,10 @@ static void a_rising_plane_lifts(void **state) {
         skein_handle lift = add_slope(world, 0, 0.5, 0, 0.01);
         OK(world, skein_set(world, lift, "motion.velocity", skein_vector(0, 0.6, 0)));
         add_particle(world, 1, 0, 0.01, 0);
-        OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 5), SKEIN_VEC3("position", 3, 0.01, 0), SKEIN_REAL("stretch.stiffness", 10), SKEIN_REAL("shear.stiffness", 10)), NULL));
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 5), SKEIN_VEC3("position", 3, 0.01, 0),
+                                                SKEIN_REAL("stretch.stiffness", 10), SKEIN_REAL("shear.stiffness", 10)),
+                                 NULL));
         steps(world, 90, 1.0 / 90);
         // where the plane is at the step's end, not where it was before
         for (size_t i = 0; i < 21; i++) assert_near(position_of(world, i).y, 0.61, 1e-5);
@@ -342,9 +349,10 @@ static void a_spinning_ball_drags_its_skin(void **state) {
         skein_world *world = new_world(method_names[m], 1);
         add_gravity(world);
         OK(world, skein_collider_add(world, "sphere",
-                                     SKEIN_SETTINGS(SKEIN_VEC3("centre", 3, 1, -2), SKEIN_REAL("radius", 0.5), SKEIN_REAL("thickness", 0),
-                                                    SKEIN_REAL("friction", 1e6), SKEIN_VEC3("motion.axis", 0, 0, 2),
-                                                    SKEIN_REAL("motion.spin", 4), SKEIN_VEC3("motion.velocity", 0, 0, 0.25)),
+                                     SKEIN_SETTINGS(SKEIN_VEC3("centre", 3, 1, -2), SKEIN_REAL("radius", 0.5),
+                                                    SKEIN_REAL("thickness", 0), SKEIN_REAL("friction", 1e6),
+                                                    SKEIN_VEC3("motion.axis", 0, 0, 2), SKEIN_REAL("motion.spin", 4),
+                                                    SKEIN_VEC3("motion.velocity", 0, 0, 0.25)),
                                      NULL));
         add_particle(world, 1, 3, 1.5, -2); // on top, where spin x radius = (0, 0, 4) x (0, 0.5, 0)
         steps(world, 1, 1.0 / 256);
@@ -362,7 +370,8 @@ static void penetration_and_contacts_are_counted(void **state) {
     skein_world *world = new_world("xpbd", 1);
     skein_handle ground = add_slope(world, 0, 0.3, 0, 0.01), ball;
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 5, 1, 0), SKEIN_REAL("radius", 0.5), SKEIN_REAL("thickness", 0.02)),
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 5, 1, 0), SKEIN_REAL("radius", 0.5),
+                                                SKEIN_REAL("thickness", 0.02)),
                                  &ball));
     add_particle(world, 1, 0, 1, 0);
     assert_true(statistics_of(world).max_penetration == 0);
@@ -390,7 +399,8 @@ static void penetration_and_contacts_are_counted(void **state) {
 static void a_plane_needs_a_normal(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
-    FAILS(world, SKEIN_ERROR_VALUE, "normal", skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_VEC3("normal", 0, 0, 0)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "normal",
+          skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_VEC3("normal", 0, 0, 0)), NULL));
     assert_int_equal(skein_object_count(world, SKEIN_COLLIDER), 0);
     skein_handle plane = add_slope(world, 0, 0, 0, 0);
     FAILS(world, SKEIN_ERROR_VALUE, "normal", skein_set(world, plane, "normal", skein_vector(0, 0, 0)));

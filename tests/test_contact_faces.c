@@ -31,7 +31,8 @@ static double distance_from(const shape *s, vec3 p) {
     const vec3 r = minus(p, s->centre);
     double out = 0, in = -1e9;
     for (int k = 0; k < 3; k++) {
-        const double own = s->turn[0][k] * r.x + s->turn[1][k] * r.y + s->turn[2][k] * r.z, over = fabs(own) - s->halves[k];
+        const double own = s->turn[0][k] * r.x + s->turn[1][k] * r.y + s->turn[2][k] * r.z,
+                     over = fabs(own) - s->halves[k];
         out += over > 0 ? over * over : 0, in = fmax(in, over);
     }
     return (out > 0 ? sqrt(out) : in) - s->radius;
@@ -44,7 +45,8 @@ static double nearest(const shape *s, crossing_search *all, const skein_world *w
     const size_t count = skein_particle_count(world);
     OK(world, skein_positions_copy(world, 0, count, &all->x->x));
     for (size_t i = 0; i < (all->count ? all->count : count - 1); i++) {
-        const uint32_t edge[3] = {(uint32_t)i, (uint32_t)i + 1, (uint32_t)i + 1}, *corner = all->count ? all->corner[i] : edge;
+        const uint32_t edge[3] = {(uint32_t)i, (uint32_t)i + 1, (uint32_t)i + 1},
+                       *corner = all->count ? all->corner[i] : edge;
         for (int a = 0; a <= CUTS; a++)
             for (int b = 0; a + b <= CUTS; b++) {
                 const double weight[3] = {(double)a / CUTS, (double)b / CUTS, (double)(CUTS - a - b) / CUTS};
@@ -76,7 +78,8 @@ static seen watch(skein_world *world, shape s, vec3 velocity, int frames) {
         const skein_statistics now = statistics_of(world);
         assert_int_equal(now.crossings, 0);
         found.least = fmin(found.least, least), found.kinetic = now.kinetic_energy;
-        if (frame > frames - 10) found.last = fmin(found.last, least), found.stretch = fmax(found.stretch, now.max_stretch);
+        if (frame > frames - 10)
+            found.last = fmin(found.last, least), found.stretch = fmax(found.stretch, now.max_stretch);
     }
     crossing_free(&all);
     return found;
@@ -93,29 +96,43 @@ static skein_world *new_contact_world(const char *method, int substeps) {
 static void add_box(skein_world *world, const char *kind, const shape *s, const double turn[3], vec3 velocity) {
     const vec3 c = s->centre;
     if (!strcmp(kind, "box")) {
-        OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("centre", c.x, c.y, c.z), SKEIN_VEC3("size", 2 * s->halves[0], 2 * s->halves[1], 2 * s->halves[2]),
-                                                                  SKEIN_VEC3("rotation", turn[0], turn[1], turn[2]), SKEIN_VEC3("motion.velocity", velocity.x, velocity.y, velocity.z)), NULL));
+        OK(world,
+           skein_collider_add(world, "box",
+                              SKEIN_SETTINGS(SKEIN_VEC3("centre", c.x, c.y, c.z),
+                                             SKEIN_VEC3("size", 2 * s->halves[0], 2 * s->halves[1], 2 * s->halves[2]),
+                                             SKEIN_VEC3("rotation", turn[0], turn[1], turn[2]),
+                                             SKEIN_VEC3("motion.velocity", velocity.x, velocity.y, velocity.z)),
+                              NULL));
         return;
     }
     solid *box = make_box(2 * s->halves[0], 2 * s->halves[1], 2 * s->halves[2]);
-    OK(world, skein_collider_add_mesh(world, kind, &box->mesh, SKEIN_SETTINGS(SKEIN_VEC3("position", c.x, c.y, c.z), SKEIN_VEC3("rotation", turn[0], turn[1], turn[2]),
-                                                                              SKEIN_VEC3("motion.velocity", velocity.x, velocity.y, velocity.z)), NULL));
+    OK(world, skein_collider_add_mesh(world, kind, &box->mesh,
+                                      SKEIN_SETTINGS(SKEIN_VEC3("position", c.x, c.y, c.z),
+                                                     SKEIN_VEC3("rotation", turn[0], turn[1], turn[2]),
+                                                     SKEIN_VEC3("motion.velocity", velocity.x, velocity.y, velocity.z)),
+                                      NULL));
     free(box);
 }
 
 /* Nowhere nearer than that, m, in all frames and in the last ones, in which no edge is longer than that. */
 static void expect(const char *what, seen found, double least, double last, double stretch) {
     if (!(found.least > least && found.last > last && found.stretch < stretch))
-        fprintf(stderr, "%s: %.2f mm off at least, %.2f in the end, %.1f %% long\n", what, 1e3 * found.least, 1e3 * found.last, 1e2 * found.stretch);
+        fprintf(stderr, "%s: %.2f mm off at least, %.2f in the end, %.1f %% long\n", what, 1e3 * found.least,
+                1e3 * found.last, 1e2 * found.stretch);
     assert_true(found.least > least && found.last > last && found.stretch < stretch);
 }
 
 /* A sheet of a metre, level, its middle half a metre and a little above the box's. */
 static void add_sheet(skein_world *world, int side, bool irregular, const char *fabric, double yaw) {
-    const skein_setting *all = SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabric), SKEIN_VEC3("position", 0.013, 0.95, 0.017), SKEIN_VEC3("rotation", 0, yaw, 0));
+    const skein_setting *all = SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabric), SKEIN_VEC3("position", 0.013, 0.95, 0.017),
+                                              SKEIN_VEC3("rotation", 0, yaw, 0));
     if (irregular) add_irregular(world, (uint32_t)side, all);
-    else OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("fabric", fabric), SKEIN_VEC3("position", 0.013, 0.95, 0.017),
-                                                                       SKEIN_VEC3("rotation", 0, yaw, 0)), NULL));
+    else
+        OK(world,
+           skein_body_add(world, "cloth", NULL,
+                          SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("fabric", fabric),
+                                         SKEIN_VEC3("position", 0.013, 0.95, 0.017), SKEIN_VEC3("rotation", 0, yaw, 0)),
+                          NULL));
 }
 
 /* Where particles alone were held, corners stood 24 mm out of cloth with cells of 5 cm, and 9 of 2.5 cm. */
@@ -160,7 +177,10 @@ static void a_thin_rod_holds_a_sheet(void **state) {
         skein_world *world = new_contact_world("xpbd", 10);
         shape s = {.halves = {0.8, 0, 0}, .radius = 0.004, .centre = {0, 0.5, 0}};
         turn_shape(&s, (const double[]){0, 0, 0});
-        OK(world, skein_collider_add(world, "capsule", SKEIN_SETTINGS(SKEIN_VEC3("from", -0.8, 0.5, 0), SKEIN_VEC3("to", 0.8, 0.5, 0), SKEIN_REAL("radius", 0.004)), NULL));
+        OK(world, skein_collider_add(world, "capsule",
+                                     SKEIN_SETTINGS(SKEIN_VEC3("from", -0.8, 0.5, 0), SKEIN_VEC3("to", 0.8, 0.5, 0),
+                                                    SKEIN_REAL("radius", 0.004)),
+                                     NULL));
         add_sheet(world, 25, irregular, "none", 7);
         const seen found = watch(world, s, (vec3){0, 0, 0}, SANITIZED ? 30 : 120);
         expect("rod", found, 0.001, 0.0015, SANITIZED ? 0.2 : 0.07); // it still falls there
@@ -179,8 +199,11 @@ static void forces_are_no_matter(void **state) {
         shape s = {.halves = {half, half, half}, .centre = {0, 0.5, 0}};
         turn_shape(&s, turn);
         add_box(world, "box", &s, turn, (vec3){0, 0, 0});
-        OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 15, 15), SKEIN_VEC3("position", 0.013, 0.95, 0.017), SKEIN_REAL("stretch.stiffness", 300),
-                                                                       SKEIN_REAL("shear.stiffness", 30), SKEIN_REAL("stretch.damping", 0.1)), NULL));
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 15, 15), SKEIN_VEC3("position", 0.013, 0.95, 0.017),
+                                                SKEIN_REAL("stretch.stiffness", 300), SKEIN_REAL("shear.stiffness", 30),
+                                                SKEIN_REAL("stretch.damping", 0.1)),
+                                 NULL));
         expect(methods[i], watch(world, s, (vec3){0, 0, 0}, SANITIZED ? 20 : 90), -0.004, -0.004, 0.5);
         skein_world_destroy(world);
     }
@@ -199,7 +222,8 @@ static void what_lies_on_a_box_goes_with_it(void **state) {
     const int frames = SANITIZED ? 30 : 180;
     expect("driven", watch(world, s, (vec3){speed, 0, 0}, frames), -0.004, -0.002, 0.08);
     double mean = 0;
-    for (size_t i = 0; i < skein_particle_count(world); i++) mean += velocity_of(world, i).x / (double)skein_particle_count(world);
+    for (size_t i = 0; i < skein_particle_count(world); i++)
+        mean += velocity_of(world, i).x / (double)skein_particle_count(world);
     if (!SANITIZED) assert_share(mean, speed, 0.05);
     skein_world_destroy(world);
 }
@@ -213,12 +237,14 @@ static void what_grows_pushes(void **state) {
     turn_shape(&s, turn);
     solid *box = make_box(0.4, 0.4, 0.4);
     skein_handle collider;
-    OK(world, skein_collider_add_mesh(world, "mesh", &box->mesh, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.5, 0)), &collider));
+    OK(world, skein_collider_add_mesh(world, "mesh", &box->mesh, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.5, 0)),
+                                      &collider));
     add_sheet(world, 20, false, "none", 20);
     crossing_search all = crossing_begin(world);
     double least = INFINITY;
     for (int frame = 0; frame < (SANITIZED ? 55 : 80); frame++) {
-        const double grown = frame < 50 ? 1 : 1 + 0.03 * fmin(frame - 49, 25); // faster than what began inside comes out
+        const double grown =
+            frame < 50 ? 1 : 1 + 0.03 * fmin(frame - 49, 25); // faster than what began inside comes out
         double corner[8][3];
         for (int v = 0; v < 8; v++)
             for (int k = 0; k < 3; k++) corner[v][k] = grown * box->position[v][k];
@@ -243,10 +269,19 @@ static skein_world *covered(int threads, const char *on, bool enabled) {
     add_gravity(world);
     OK(world, skein_force_add(world, "contact", NULL, NULL));
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -10)), NULL));
-    OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_VEC3("size", 0.5, 0.5, 0.5), SKEIN_VEC3("rotation", 10, 17, 6),
-                                                              SKEIN_TEXT("on", on), SKEIN_REAL("enabled", enabled)), NULL));
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 20, 20), SKEIN_VEC3("position", 0.013, 0.8, 0.017)), NULL));
-    OK(world, skein_body_add(world, "rope", NULL, SKEIN_SETTINGS(SKEIN_TEXT("name", "rope"), SKEIN_REAL("count", 5), SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 4, 0, 0)), NULL));
+    OK(world, skein_collider_add(world, "box",
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
+                                                SKEIN_VEC3("rotation", 10, 17, 6), SKEIN_TEXT("on", on),
+                                                SKEIN_REAL("enabled", enabled)),
+                                 NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "sheet"), SKEIN_PAIR("grid", 20, 20),
+                                            SKEIN_VEC3("position", 0.013, 0.8, 0.017)),
+                             NULL));
+    OK(world, skein_body_add(world, "rope", NULL,
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "rope"), SKEIN_REAL("count", 5),
+                                            SKEIN_VEC3("from", 3, 0, 0), SKEIN_VEC3("to", 4, 0, 0)),
+                             NULL));
     return world;
 }
 
@@ -284,11 +319,16 @@ static seen watch_driven(bool ball, double speed) {
     turn_shape(&s, ball ? still : turn);
     const vec3 velocity = {0, 0, speed};
     if (ball)
-        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", s.radius), SKEIN_VEC3("centre", s.centre.x, s.centre.y, s.centre.z),
-                                                                    SKEIN_VEC3("motion.velocity", 0, 0, speed)), NULL));
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_REAL("radius", s.radius),
+                                                    SKEIN_VEC3("centre", s.centre.x, s.centre.y, s.centre.z),
+                                                    SKEIN_VEC3("motion.velocity", 0, 0, speed)),
+                                     NULL));
     else add_box(world, "box", &s, turn, velocity);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", 90, 0, 0),
-                                                                  SKEIN_TEXT("pins", "top edge")), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_VEC3("position", 0, 1, 0),
+                                            SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top edge")),
+                             NULL));
     const seen found = watch(world, s, velocity, (int)((ball ? 0.3 : 0.9) / step_length / speed));
     skein_world_destroy(world);
     return found;
@@ -304,7 +344,8 @@ static void what_is_driven_at_a_sheet_takes_it_along(void **state) {
             double logs = 0;
             for (int k = -1; k <= 1; k++) {
                 const seen found = watch_driven(ball, (1 + 0.03 * k) * speed);
-                all.least = fmin(all.least, found.least), all.last = fmin(all.last, found.last), logs += log(found.stretch);
+                all.least = fmin(all.least, found.least), all.last = fmin(all.last, found.last),
+                logs += log(found.stretch);
             }
             all.stretch = exp(logs / 3);
             expect(ball ? "ball" : "corner", all, ball ? 0.001 : -0.003, ball ? 0.001 : -0.003, speed == 1 ? 0.1 : 0.25);
@@ -320,18 +361,30 @@ static void ropes_and_solids_meet_edges_and_corners(void **state) {
         turn_shape(&s, turn);
         add_box(world, "box", &s, turn, (vec3){0, 0, 0});
         if (soft)
-            OK(world, skein_body_add(world, "lattice", NULL, SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("position", 0.013, 1.25, 0.017)), NULL));
-        else OK(world, skein_body_add(world, "rope", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 30), SKEIN_VEC3("from", -0.6, 1.1, 0.013), SKEIN_VEC3("to", 0.7, 1.1, 0.1)), NULL));
+            OK(world, skein_body_add(world, "lattice", NULL,
+                                     SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", 0.4, 0.4, 0.4),
+                                                    SKEIN_VEC3("position", 0.013, 1.25, 0.017)),
+                                     NULL));
+        else
+            OK(world, skein_body_add(world, "rope", NULL,
+                                     SKEIN_SETTINGS(SKEIN_REAL("count", 30), SKEIN_VEC3("from", -0.6, 1.1, 0.013),
+                                                    SKEIN_VEC3("to", 0.7, 1.1, 0.1)),
+                                     NULL));
         const seen found = watch(world, s, (vec3){0, 0, 0}, 45);
-        expect(soft ? "lattice" : "rope", found, soft ? -0.01 : 0.001, soft ? -0.004 : 0.001, 0.15); // the block came in by 48 mm
+        expect(soft ? "lattice" : "rope", found, soft ? -0.01 : 0.001, soft ? -0.004 : 0.001,
+               0.15); // the block came in by 48 mm
         skein_world_destroy(world);
     }
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_do_not_stand_out_of_cloth), cmocka_unit_test(a_thin_rod_holds_a_sheet),
-                                       cmocka_unit_test(forces_are_no_matter), cmocka_unit_test(what_lies_on_a_box_goes_with_it), cmocka_unit_test(what_grows_pushes),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_do_not_stand_out_of_cloth),
+                                       cmocka_unit_test(a_thin_rod_holds_a_sheet),
+                                       cmocka_unit_test(forces_are_no_matter),
+                                       cmocka_unit_test(what_lies_on_a_box_goes_with_it),
+                                       cmocka_unit_test(what_grows_pushes),
                                        cmocka_unit_test(bits_stay_and_names_count),
-                                       cmocka_unit_test(what_is_driven_at_a_sheet_takes_it_along), cmocka_unit_test(ropes_and_solids_meet_edges_and_corners)};
+                                       cmocka_unit_test(what_is_driven_at_a_sheet_takes_it_along),
+                                       cmocka_unit_test(ropes_and_solids_meet_edges_and_corners)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

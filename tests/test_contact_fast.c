@@ -29,10 +29,11 @@ static void thin_fabrics_lie_still(void **state) {
         add_gravity(world);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
         OK(world, skein_force_add(world, "contact", NULL, NULL));
-        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.003), SKEIN_REAL("friction", 0.5)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.003), SKEIN_REAL("friction", 0.5)), NULL));
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f]), SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_VEC3("position", 0, 0.56, 0),
-                                                SKEIN_VEC3("rotation", 87, 10, 0)),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f]), SKEIN_PAIR("grid", SIDE, SIDE),
+                                                SKEIN_VEC3("position", 0, 0.56, 0), SKEIN_VEC3("rotation", 87, 10, 0)),
                                  NULL));
         static vec3 before[SIDE * SIDE];
         const skein_statistics start = statistics_of(world);
@@ -42,7 +43,8 @@ static void thin_fabrics_lie_still(void **state) {
             const skein_statistics now = statistics_of(world);
             assert_int_equal(now.crossings, 0);
             find_speeds(world, before, &told, &true_speed);
-            assert_under(fmax(0, now.kinetic_energy + now.potential_energy - start.potential_energy), 0.004 * start.potential_energy);
+            assert_under(fmax(0, now.kinetic_energy + now.potential_energy - start.potential_energy),
+                         0.004 * start.potential_energy);
         }
         assert_under(statistics_of(world).kinetic_energy, 1e-3 * start.potential_energy);
         assert_under(told, 1.5 * true_speed + 0.3);
@@ -70,7 +72,9 @@ static double stretch_of_led(bool irregular, double speed) {
     char pin[32];
     snprintf(pin, sizeof pin, "%d", LED);
     if (irregular) add_irregular(world, SIDE, SKEIN_SETTINGS(SKEIN_TEXT("pins", pin)));
-    else OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pin)), NULL));
+    else
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pin)), NULL));
     const vec3 at = position_of(world, LED);
     double most = 0;
     for (int frame = 1; frame <= 60; frame++) {
@@ -103,10 +107,14 @@ static skein_world *sheet(int threads, double more, double thickness, bool meets
     assert_non_null(world);
     OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
     add_gravity(world);
-    if (meets) OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_REAL("thickness", thickness)), NULL));
+    if (meets)
+        OK(world, skein_force_add(world, "contact",
+                                  SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_REAL("thickness", thickness)),
+                                  NULL));
     char pin[32];
     snprintf(pin, sizeof pin, "%d", LED);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pin)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pin)), NULL));
     return world;
 }
 
@@ -126,11 +134,12 @@ static void what_is_led_fast_has_more_substeps(void **state) {
         bool meets;
         uint64_t least, most; /* substeps */
     } cases[] = {
-        {10, 10, 0.005, true, 18, 36}, // 17 past what is at rest, and twice as many past what flies the other way: of four each
-        {10, 1, 0.005, true, 10, 10},  // never
-        {4, 2, 0.0005, true, 20, 20}, // as many as it may
+        {10, 10, 0.005, true, 18,
+         36}, // 17 past what is at rest, and twice as many past what flies the other way: of four each
+        {10, 1, 0.005, true, 10, 10},   // never
+        {4, 2, 0.0005, true, 20, 20},   // as many as it may
         {10, 10, 0.005, false, 10, 10}, // nothing meets
-        {2, 10, 0.005, true, 10, 10},  // slowly
+        {2, 10, 0.005, true, 10, 10},   // slowly
     };
     for (size_t c = 0; c < COUNT(cases); c++) {
         skein_world *world = sheet(1, cases[c].more, cases[c].thickness, cases[c].meets);
@@ -142,7 +151,8 @@ static void what_is_led_fast_has_more_substeps(void **state) {
             assert_true(now >= 10 && now <= last + last / 4 + 1);
             most = now > most ? now : most, last = now;
         }
-        if (most < cases[c].least || most > cases[c].most) fprintf(stderr, "case %zu: %llu substeps\n", c, (unsigned long long)most);
+        if (most < cases[c].least || most > cases[c].most)
+            fprintf(stderr, "case %zu: %llu substeps\n", c, (unsigned long long)most);
         assert_true(most >= cases[c].least && most <= cases[c].most);
         assert_int_equal(substeps_of_frame(world, at, 0, 0), 10);
         skein_world_destroy(world);
@@ -178,18 +188,21 @@ static void more_substeps_go_on_from_a_snapshot(void **state) {
  * ball, a ball at one that hangs, by its own motion or as a motion leads it. */
 typedef enum aim { AT_AN_EDGE, A_JELLY, AT_A_JELLY, AT_A_BALL, A_BALL, A_LED_BALL } aim;
 
-static void add_sheet(skein_world *world, bool irregular, const char *pins, double height, double tilt, double yaw, double speed) {
-    const skein_setting *settings = SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("name", pins[0] ? "cloth" : "sheet"),
-                                                   SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0.1, height, 0.05),
-                                                   SKEIN_VEC3("rotation", tilt, yaw, 0), SKEIN_VEC3("velocity", 0, -speed, 0));
+static void add_sheet(skein_world *world, bool irregular, const char *pins, double height, double tilt, double yaw,
+                      double speed) {
+    const skein_setting *settings =
+        SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("name", pins[0] ? "cloth" : "sheet"),
+                       SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0.1, height, 0.05),
+                       SKEIN_VEC3("rotation", tilt, yaw, 0), SKEIN_VEC3("velocity", 0, -speed, 0));
     if (irregular) add_irregular(world, SIDE, settings + 1);
     else OK(world, skein_body_add(world, "cloth", NULL, settings, NULL));
 }
 
 static void add_jelly(skein_world *world, double mass, double height, double depth, double speed) {
     OK(world, skein_body_add(world, "lattice", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "jelly"), SKEIN_VEC3("grid", 6, 6, 6), SKEIN_VEC3("size", 0.3, 0.3, 0.3),
-                                            SKEIN_REAL("mass", mass), SKEIN_VEC3("position", 0, height, depth), SKEIN_VEC3("rotation", 10, 35, 0),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "jelly"), SKEIN_VEC3("grid", 6, 6, 6),
+                                            SKEIN_VEC3("size", 0.3, 0.3, 0.3), SKEIN_REAL("mass", mass),
+                                            SKEIN_VEC3("position", 0, height, depth), SKEIN_VEC3("rotation", 10, 35, 0),
                                             SKEIN_VEC3("velocity", 0, 0, -speed)),
                              NULL));
 }
@@ -200,7 +213,8 @@ static skein_world *thrown(int threads, double more, const char *ignore, aim wha
     skein_world *world = skein_world_create(&desc, NULL);
     assert_non_null(world);
     add_gravity(world);
-    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_TEXT("ignore", ignore)), NULL));
+    OK(world, skein_force_add(world, "contact",
+                              SKEIN_SETTINGS(SKEIN_REAL("more_substeps", more), SKEIN_TEXT("ignore", ignore)), NULL));
     if (what == AT_AN_EDGE) {
         add_sheet(world, false, "top edge, bottom edge", 0, 90, 0, 0);
         add_sheet(world, irregular, "", 0.9, 8, 40, speed);
@@ -209,22 +223,30 @@ static skein_world *thrown(int threads, double more, const char *ignore, aim wha
         add_jelly(world, 1, 0, 0.8, speed);
     } else if (what == AT_A_BALL) {
         OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.6)), NULL));
-        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.4, 0)), NULL));
+        OK(world,
+           skein_collider_add(world, "sphere",
+                              SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.4, 0)), NULL));
         add_sheet(world, irregular, "", 0.5, 20, 30, speed);
     } else if (what == A_LED_BALL) {
         add_sheet(world, false, "top corners", 0, 90, 0, 0);
         OK(world, skein_body_add(world, "rope", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "anchor"), SKEIN_REAL("count", 2), SKEIN_VEC3("from", 9, 9, 9), SKEIN_VEC3("to", 9.1, 9, 9),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "anchor"), SKEIN_REAL("count", 2),
+                                                SKEIN_VEC3("from", 9, 9, 9), SKEIN_VEC3("to", 9.1, 9, 9),
                                                 SKEIN_TEXT("pins", "first, last")),
                                  NULL));
         OK(world, skein_collider_add(world, "sphere",
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.1, 0.8)), NULL));
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.15),
+                                                    SKEIN_VEC3("centre", 0.05, -0.1, 0.8)),
+                                     NULL));
         OK(world, skein_motion_add(world, "translate", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "anchor"), SKEIN_TEXT("colliders", "ball"), SKEIN_VEC3("velocity", 0, 0, -speed)), NULL));
+                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "anchor"), SKEIN_TEXT("colliders", "ball"),
+                                                  SKEIN_VEC3("velocity", 0, 0, -speed)),
+                                   NULL));
     } else if (what == A_BALL) {
         add_sheet(world, false, "top corners", 0, 90, 0, 0);
         OK(world, skein_collider_add(world, "sphere",
-                                     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.1, 0.8), SKEIN_VEC3("motion.velocity", 0, 0, -speed)),
+                                     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.15), SKEIN_VEC3("centre", 0.05, -0.1, 0.8),
+                                                    SKEIN_VEC3("motion.velocity", 0, 0, -speed)),
                                      NULL));
     } else {
         OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.25)), NULL));
@@ -262,9 +284,9 @@ static void what_is_thrown_is_not_stretched(void **state) {
         bool irregular;
         double speed, most, without; /* of stretch, with more substeps and without */
     } cases[] = {
-        {AT_AN_EDGE, false, 12, 0.35, 1}, {AT_AN_EDGE, true, 12, 0.35, 1}, {A_JELLY, false, 20, 0.4, 1},
-        {AT_A_JELLY, false, 20, 0.5, 1}, {AT_A_JELLY, true, 12, 0.6, 0.8}, {AT_A_BALL, false, 20, 0.2, 0.4}, {AT_A_BALL, true, 20, 0.35, 1},
-        {A_BALL, false, 12, 0.2, 1}, {A_LED_BALL, false, 12, 0.25, 1},
+        {AT_AN_EDGE, false, 12, 0.35, 1}, {AT_AN_EDGE, true, 12, 0.35, 1},  {A_JELLY, false, 20, 0.4, 1},
+        {AT_A_JELLY, false, 20, 0.5, 1},  {AT_A_JELLY, true, 12, 0.6, 0.8}, {AT_A_BALL, false, 20, 0.2, 0.4},
+        {AT_A_BALL, true, 20, 0.35, 1},   {A_BALL, false, 12, 0.2, 1},      {A_LED_BALL, false, 12, 0.25, 1},
     };
     for (size_t c = SANITIZED ? COUNT(cases) - 2 : 0; c < COUNT(cases); c++) {
         assert_under(mean_of_thrown(true, cases[c].what, cases[c].irregular, cases[c].speed), cases[c].most);
@@ -274,8 +296,9 @@ static void what_is_thrown_is_not_stretched(void **state) {
 
 static void throw_dice(skein_world *world, double mass, double size, const double at[3], const double velocity[3]) {
     OK(world, skein_body_add(world, "lattice", NULL,
-                             SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", size, size, size), SKEIN_REAL("mass", mass),
-                                            SKEIN_VEC3("position", at[0], at[1], at[2]), SKEIN_VEC3("rotation", 20, 30, 0),
+                             SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", size, size, size),
+                                            SKEIN_REAL("mass", mass), SKEIN_VEC3("position", at[0], at[1], at[2]),
+                                            SKEIN_VEC3("rotation", 20, 30, 0),
                                             SKEIN_VEC3("velocity", velocity[0], velocity[1], velocity[2])),
                              NULL));
 }
@@ -288,8 +311,9 @@ static void a_curtain_stays_beside_its_pins(void **state) {
         add_gravity(world);
         OK(world, skein_force_add(world, "contact", NULL, NULL));
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("fabric", "denim"), SKEIN_PAIR("grid", 45, 60), SKEIN_PAIR("size", 1.6, 1.2),
-                                                SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_VEC3("position", 0, 1.2, 0), SKEIN_TEXT("pins", "top edge")),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("fabric", "denim"), SKEIN_PAIR("grid", 45, 60),
+                                                SKEIN_PAIR("size", 1.6, 1.2), SKEIN_VEC3("rotation", 90, 0, 0),
+                                                SKEIN_VEC3("position", 0, 1.2, 0), SKEIN_TEXT("pins", "top edge")),
                                  NULL));
         throw_dice(world, 0.6, 0.25, (const double[]){0.1 + 0.06 * which, 1.3, 2}, (const double[]){0, 1.5, -11});
         throw_dice(world, 0.4, 0.2, (const double[]){-0.3 + 0.1 * which, 1, -3}, (const double[]){0, 2, 14});
@@ -332,13 +356,16 @@ static void what_comes_near_has_more_substeps(void **state) {
         double more, speed;
         const char *ignore;
         aim what;
-    } none[] = {{1, 12, "", A_JELLY}, {10, 12, "cloth:jelly", A_JELLY}, {10, 1, "", A_JELLY},  {10, 12, "cloth, jelly:cloth", A_JELLY},
-                {10, -12, "", A_JELLY}, {10, 1, "", A_BALL}, {10, -12, "", A_BALL}, {1, 12, "", AT_A_BALL}};
+    } none[] = {{1, 12, "", A_JELLY},   {10, 12, "cloth:jelly", A_JELLY},
+                {10, 1, "", A_JELLY},   {10, 12, "cloth, jelly:cloth", A_JELLY},
+                {10, -12, "", A_JELLY}, {10, 1, "", A_BALL},
+                {10, -12, "", A_BALL},  {1, 12, "", AT_A_BALL}};
     for (size_t c = 0; c < COUNT(none); c++) {
         world = thrown(1, none[c].more, none[c].ignore, none[c].what, false, none[c].speed);
         count_substeps(world, each, FRAMES);
         for (int frame = 0; frame < FRAMES; frame++)
-            if (each[frame] != 10) fail_msg("case %zu, frame %d: %llu substeps", c, frame, (unsigned long long)each[frame]);
+            if (each[frame] != 10)
+                fail_msg("case %zu, frame %d: %llu substeps", c, frame, (unsigned long long)each[frame]);
         skein_world_destroy(world);
     }
 }
@@ -362,10 +389,13 @@ static void what_comes_near_goes_on_from_a_snapshot(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(thin_fabrics_lie_still), cmocka_unit_test(what_is_led_fast_follows),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(thin_fabrics_lie_still),
+                                       cmocka_unit_test(what_is_led_fast_follows),
                                        cmocka_unit_test(what_is_led_fast_has_more_substeps),
                                        cmocka_unit_test(more_substeps_go_on_from_a_snapshot),
-                                       cmocka_unit_test(what_is_thrown_is_not_stretched), cmocka_unit_test(what_comes_near_has_more_substeps), cmocka_unit_test(a_curtain_stays_beside_its_pins),
+                                       cmocka_unit_test(what_is_thrown_is_not_stretched),
+                                       cmocka_unit_test(what_comes_near_has_more_substeps),
+                                       cmocka_unit_test(a_curtain_stays_beside_its_pins),
                                        cmocka_unit_test(what_comes_near_goes_on_from_a_snapshot)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -19,7 +19,8 @@ static skein_world *world_with(char *text) {
 /* A sheet with cells of `cell`, and edges of 1.14 of it in the mean, for of each three one goes across. */
 static void add_sheet(skein_world *world, const char *name, double cell, double own, double height) {
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 8 * cell, 8 * cell),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 9, 9),
+                                            SKEIN_PAIR("size", 8 * cell, 8 * cell),
                                             SKEIN_REAL("contact.thickness", own), SKEIN_VEC3("position", 0, height, 0)),
                              NULL));
 }
@@ -36,9 +37,10 @@ static void who_is_too_thick_is_told_of_once(void **state) {
     add_sheet(world, "fine", 0.005, 0, 1);
     add_contact(world, 0.005);
     steps(world, 2, 1.0 / 60);
-    assert_string_equal(text, "contact: fine is 0.005 m thick, and its edges are 0.0057 m long in the mean: all of it is near dozens of "
-                              "others, which can take several times as long as a thickness of 0.001 m (its contact.thickness, or this "
-                              "force's thickness)\n");
+    assert_string_equal(
+        text, "contact: fine is 0.005 m thick, and its edges are 0.0057 m long in the mean: all of it is near dozens of "
+              "others, which can take several times as long as a thickness of 0.001 m (its contact.thickness, or this "
+              "force's thickness)\n");
     add_sheet(world, "finer", 0.004, 0, 2); // another skin: once is enough
     steps(world, 2, 1.0 / 60);
     assert_null(strstr(text, "finer"));
@@ -65,6 +67,7 @@ static void who_is_thin_is_not(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(who_is_too_thick_is_told_of_once), cmocka_unit_test(who_is_thin_is_not)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(who_is_too_thick_is_told_of_once),
+                                       cmocka_unit_test(who_is_thin_is_not)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -289,7 +289,8 @@ static void contact_goes_through_what_is_cut(void **state) {
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "all")), &board));
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_PAIR("size", 0.25, 0.25),
-                                                SKEIN_VEC3("position", 0, 0.1, 0)), &patch));
+                                                SKEIN_VEC3("position", 0, 0.1, 0)),
+                                 &patch));
         OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01)), NULL));
         OK(world, skein_body_surface(world, board, &surface));
         OK(world, skein_body_surface(world, patch, &falling));
@@ -311,14 +312,16 @@ static void a_balloon_bursts(void **state) {
     (void)state;
     const double corners[6][3] = {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}};
     const uint32_t sizes[8] = {3, 3, 3, 3, 3, 3, 3, 3};
-    const uint32_t faces[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    const uint32_t faces[8][3] = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                                  {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
     const skein_mesh mesh = {&corners[0][0], 6, sizes, 8, &faces[0][0], 24};
     for (int cut = 0; cut < 2; cut++) {
         skein_world *world = new_world("symplectic_euler", 10);
         skein_handle cloth;
         skein_surface surface;
         OK(world, skein_body_add(world, "cloth", &mesh, NULL, &cloth));
-        OK(world, skein_constraint_add(world, "pressure", &faces[0][0], 8, SKEIN_SETTINGS(SKEIN_REAL("pressure", 100)), NULL));
+        OK(world,
+           skein_constraint_add(world, "pressure", &faces[0][0], 8, SKEIN_SETTINGS(SKEIN_REAL("pressure", 100)), NULL));
         OK(world, skein_body_surface(world, cloth, &surface));
         assert_int_equal(surface.particle_count, 6);
         if (cut) OK(world, skein_cut_faces(world, cloth, (const uint32_t[]){5}, 1));
@@ -341,7 +344,8 @@ static void refusals(void **state) {
     skein_handle rope;
     size_t count = 7;
     OK(h.world, skein_body_add(h.world, "rope", NULL, NULL, &rope));
-    const double blade[3][3] = {{-5, 0.1, -5}, {5, 0.1, -5}, {0, 0.1, 5}}, bad[3][3] = {{0, 0, 0}, {0, NAN, 0}, {1, 1, 1}};
+    const double blade[3][3] = {{-5, 0.1, -5}, {5, 0.1, -5}, {0, 0.1, 5}},
+                 bad[3][3] = {{0, 0, 0}, {0, NAN, 0}, {1, 1, 1}};
     FAILS(h.world, SKEIN_ERROR_VALUE, "only sheets", skein_cut(h.world, rope, blade, &count));
     FAILS(h.world, SKEIN_ERROR_VALUE, "corner 1 of the blade", skein_cut(h.world, h.cloth, bad, &count));
     FAILS(h.world, SKEIN_ERROR_VALUE, "no face 16 (the body has 16)",
@@ -352,7 +356,8 @@ static void refusals(void **state) {
     assert_int_equal(count_cut(&h), 0);
     OK(h.world, skein_cut_mend(h.world, rope));
     // a blade beside the cloth meets nothing, one within a face meets that, and what is cut is not counted again
-    const double beside[3][3] = {{2, -1, -1}, {2, 1, -1}, {2, 0, 1}}, within[3][3] = {{0.05, 0.1, -1}, {0.1, 0.12, 1}, {0.1, 0.2, -1}};
+    const double beside[3][3] = {{2, -1, -1}, {2, 1, -1}, {2, 0, 1}},
+                 within[3][3] = {{0.05, 0.1, -1}, {0.1, 0.12, 1}, {0.1, 0.2, -1}};
     OK(h.world, skein_cut(h.world, h.cloth, beside, &count));
     assert_int_equal(count, 0);
     OK(h.world, skein_cut(h.world, h.cloth, within, &count));
@@ -364,11 +369,16 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_lower_half_falls_freely),      cmocka_unit_test(tethers_go_around_a_cut),
-        cmocka_unit_test(the_same_bits),                    cmocka_unit_test(a_reset_makes_whole),
-        cmocka_unit_test(snapshots_hold_cuts),              cmocka_unit_test(recordings_hold_cuts),
-        cmocka_unit_test(nothing_meets_what_is_cut),        cmocka_unit_test(contact_goes_through_what_is_cut),
-        cmocka_unit_test(a_balloon_bursts),                 cmocka_unit_test(refusals),
+        cmocka_unit_test(the_lower_half_falls_freely),
+        cmocka_unit_test(tethers_go_around_a_cut),
+        cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(a_reset_makes_whole),
+        cmocka_unit_test(snapshots_hold_cuts),
+        cmocka_unit_test(recordings_hold_cuts),
+        cmocka_unit_test(nothing_meets_what_is_cut),
+        cmocka_unit_test(contact_goes_through_what_is_cut),
+        cmocka_unit_test(a_balloon_bursts),
+        cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

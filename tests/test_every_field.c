@@ -176,7 +176,8 @@ static const skein_mesh meshes[] = {{NULL, 0, NULL, 0, NULL, 0},
                                     {&solid_points[0][0], 5, fours, 2, solid_corners, 8}};
 
 /* Of colliders that are made from one. */
-static const uint32_t triangle_corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 1, 4, 3}, threes[] = {3, 3, 3, 3, 3, 3};
+static const uint32_t triangle_corners[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 4, 2, 3, 4, 1, 4, 3},
+                      threes[] = {3, 3, 3, 3, 3, 3};
 static const skein_mesh solid_of_triangles = {&solid_points[0][0], 5, threes, 6, triangle_corners, 18};
 
 static const skein_mesh *mesh_of(const skein_kind *kind) {
@@ -214,16 +215,16 @@ static uint32_t add_company(skein_world *world, uint64_t *seed, bool layers) {
                              SKEIN_SETTINGS(SKEIN_TEXT("name", "a"), SKEIN_REAL("count", 6),
                                             SKEIN_VEC3("spread", 1, 1, 1), SKEIN_REAL("speed", 2)),
                              NULL));
-    OK(world, skein_body_add(
-                  world, "cloth", NULL,
-                  SKEIN_SETTINGS(SKEIN_TEXT("name", "b"), SKEIN_PAIR("grid", 3, 3), SKEIN_VEC3("rotation", 30, 20, 10),
-                                 SKEIN_TEXT("pins", "0 1")),
-                  NULL));
-    if (!layers) return first;
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "c"), SKEIN_PAIR("grid", 2, 2), SKEIN_PAIR("size", 0.5, 0.5),
-                                            SKEIN_VEC3("rotation", 30, 20, 10), SKEIN_VEC3("position", 0, 0.004, 0)),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "b"), SKEIN_PAIR("grid", 3, 3),
+                                            SKEIN_VEC3("rotation", 30, 20, 10), SKEIN_TEXT("pins", "0 1")),
                              NULL));
+    if (!layers) return first;
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", "c"), SKEIN_PAIR("grid", 2, 2), SKEIN_PAIR("size", 0.5, 0.5),
+                                     SKEIN_VEC3("rotation", 30, 20, 10), SKEIN_VEC3("position", 0, 0.004, 0)),
+                      NULL));
     return first;
 }
 
@@ -253,11 +254,14 @@ static skein_status add_motion(skein_world *world, const trial *t, uint32_t firs
     for (int i = 0; i < SAMPLES * LED * 3; i++) (&places[0][0][0])[i] = random_between(&seed, -1, 1);
     const skein_track track = {led, &places[0][0][0], LED, SAMPLES, 0.0007};
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "wall"), SKEIN_VEC3("centre", 0.3, 0.3, 0.3), SKEIN_REAL("radius", 0.4)), NULL));
-    OK(world, skein_collider_add_mesh(world, "mesh", &solid_of_triangles,
-                                      SKEIN_SETTINGS(SKEIN_TEXT("name", "solid"), SKEIN_TEXT("on", "a"), SKEIN_VEC3("motion.velocity", 0.3, 1, 0),
-                                                     SKEIN_REAL("motion.spin", 5)),
-                                      NULL));
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "wall"), SKEIN_VEC3("centre", 0.3, 0.3, 0.3),
+                                                SKEIN_REAL("radius", 0.4)),
+                                 NULL));
+    OK(world,
+       skein_collider_add_mesh(world, "mesh", &solid_of_triangles,
+                               SKEIN_SETTINGS(SKEIN_TEXT("name", "solid"), SKEIN_TEXT("on", "a"),
+                                              SKEIN_VEC3("motion.velocity", 0.3, 1, 0), SKEIN_REAL("motion.spin", 5)),
+                               NULL));
     skein_status status = skein_motion_add(world, t->s->kind->name, NULL, settings, handle);
     return status == SKEIN_ERROR_VALUE ? skein_motion_add(world, t->s->kind->name, &track, settings, handle) : status;
 }
@@ -463,8 +467,10 @@ static outcome try_methods(const subject *s, size_t f, int level, int *start) {
 
 /* Whether a field says that it is for other methods, or one under which it has an effect is enough. */
 static bool is_for_others(const char *kind, const char *field, const char *method) {
-    if (!strcmp(kind, "cloth") && !strcmp(field, "contact.friction")) return true; // those that are tried seldom rub; test_fabrics.c has some that do
-    return !strcmp(kind, "contact") && !strcmp(field, "more_substeps") && strcmp(method, "xpbd") != 0 && strcmp(method, "pbd") != 0;
+    if (!strcmp(kind, "cloth") && !strcmp(field, "contact.friction"))
+        return true; // those that are tried seldom rub; test_fabrics.c has some that do
+    return !strcmp(kind, "contact") && !strcmp(field, "more_substeps") && strcmp(method, "xpbd") != 0 &&
+           strcmp(method, "pbd") != 0;
 }
 
 /* How many faults the field has. */

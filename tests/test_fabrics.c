@@ -3,7 +3,8 @@
 #include "helpers.h"
 
 static const char *const fabrics[] = {"cotton", "silk", "denim", "wool", "felt", "rubber", "paper"};
-static const char *const numbers[] = {"density", "stretch.stiffness", "shear.stiffness", "bend.rigidity", "contact.thickness"};
+static const char *const numbers[] = {"density", "stretch.stiffness", "shear.stiffness", "bend.rigidity",
+                                      "contact.thickness"};
 
 static double number_of(const skein_world *world, skein_handle body, const char *field) {
     skein_value value;
@@ -26,7 +27,8 @@ static void each_fabric_has_numbers_of_its_own(void **state) {
     double seen[COUNT(fabrics) + 1][COUNT(numbers)];
     for (size_t f = 0; f <= COUNT(fabrics); f++) {
         skein_world *world = new_world("xpbd", 1);
-        skein_handle body = add_sheet(world, f < COUNT(fabrics) ? SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f])) : NULL);
+        skein_handle body =
+            add_sheet(world, f < COUNT(fabrics) ? SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f])) : NULL);
         for (size_t n = 0; n < COUNT(numbers); n++) {
             seen[f][n] = number_of(world, body, numbers[n]);
             if (f < COUNT(fabrics)) assert_true(seen[f][n] >= least[n] && seen[f][n] <= most[n]);
@@ -65,8 +67,9 @@ static void what_is_said_itself_counts(void **state) {
     assert_true(number_of(world, two, "density") == number_of(world, denim, "density"));
     // it weighs what it was built with
     FAILS(world, SKEIN_ERROR_VALUE, "shapes", skein_set(world, denim, "fabric", skein_text("silk")));
-    FAILS(world, SKEIN_ERROR_VALUE, "denim", skein_body_add(world, "cloth", NULL,
-                                                            SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("fabric", "jute")), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "denim",
+          skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("fabric", "jute")),
+                         NULL));
     OK(world, skein_set(world, denim, "stretch.stiffness", skein_number(1e3)));
     assert_true(number_of(world, denim, "stretch.stiffness") == 1e3);
     skein_world_destroy(world);
@@ -80,8 +83,9 @@ static void stiffness_is_that_of_the_sheet(void **state) {
     for (size_t f = 0; f < COUNT(fabrics); f++)
         for (int shears = 0; shears < 2; shears++) {
             skein_world *world = new_world("xpbd", 1);
-            skein_handle body = add_sheet(world, SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f]), SKEIN_REAL("bend.rigidity", 0),
-                                                                SKEIN_REAL(shears ? "stretch.stiffness" : "shear.stiffness", 0)));
+            skein_handle body =
+                add_sheet(world, SKEIN_SETTINGS(SKEIN_TEXT("fabric", fabrics[f]), SKEIN_REAL("bend.rigidity", 0),
+                                                SKEIN_REAL(shears ? "stretch.stiffness" : "shear.stiffness", 0)));
             for (size_t i = 0; i < 81; i++) {
                 vec3 p = position_of(world, i);
                 place_particle(world, i, p.x + gamma * (shears ? p.z : p.x), p.y, p.z);
@@ -104,11 +108,14 @@ typedef struct lying {
 static lying lay(const skein_setting *board, const skein_setting *patch, double gap, double angle) {
     lying l = {.world = new_world("xpbd", 10)};
     const double radians = angle * 0.017453292519943295;
-    skein_setting settings[2][8] = {{SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "all")},
-                                    {SKEIN_PAIR("grid", 4, 4), SKEIN_PAIR("size", 0.15, 0.15), SKEIN_VEC3("position", -0.2, gap, 0.03)}};
+    skein_setting settings[2][8] = {
+        {SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "all")},
+        {SKEIN_PAIR("grid", 4, 4), SKEIN_PAIR("size", 0.15, 0.15), SKEIN_VEC3("position", -0.2, gap, 0.03)}};
     for (size_t i = 0; board[i].name; i++) settings[0][2 + i] = board[i];
     for (size_t i = 0; patch[i].name; i++) settings[1][3 + i] = patch[i];
-    OK(l.world, skein_force_add(l.world, "gravity", SKEIN_SETTINGS(SKEIN_VEC3("acceleration", 9.81 * sin(radians), -9.81 * cos(radians), 0)), NULL));
+    OK(l.world,
+       skein_force_add(l.world, "gravity",
+                       SKEIN_SETTINGS(SKEIN_VEC3("acceleration", 9.81 * sin(radians), -9.81 * cos(radians), 0)), NULL));
     OK(l.world, skein_force_add(l.world, "contact", NULL, NULL)); // which says nothing itself
     OK(l.world, skein_body_add(l.world, "cloth", NULL, settings[0], NULL));
     OK(l.world, skein_body_add(l.world, "cloth", NULL, settings[1], &l.patch));
@@ -168,7 +175,8 @@ static void it_slides_as_its_friction_says(void **state) {
         {SKEIN_SETTINGS(DENIM), SKEIN_SETTINGS(DENIM), 0.0009, 0.45},
         {SKEIN_SETTINGS(SILK), SKEIN_SETTINGS(SILK), 0.00025, 0.25},
         {SKEIN_SETTINGS(DENIM), SKEIN_SETTINGS(SILK), (0.0009 + 0.00025) / 2, 0.35},
-        {SKEIN_SETTINGS(SILK, SKEIN_REAL("contact.friction", 0)), SKEIN_SETTINGS(SILK, SKEIN_REAL("contact.friction", 0.1)), 0.00025, 0.05},
+        {SKEIN_SETTINGS(SILK, SKEIN_REAL("contact.friction", 0)),
+         SKEIN_SETTINGS(SILK, SKEIN_REAL("contact.friction", 0.1)), 0.00025, 0.05},
     };
     for (size_t c = 0; c < COUNT(cases); c++) {
         const double angle = 20, radians = angle * 0.017453292519943295, t = 0.5;
@@ -184,10 +192,8 @@ static void it_slides_as_its_friction_says(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_fabric_has_numbers_of_its_own),
-        cmocka_unit_test(what_is_said_itself_counts),
-        cmocka_unit_test(stiffness_is_that_of_the_sheet),
-        cmocka_unit_test(it_lies_as_thick_as_it_is),
+        cmocka_unit_test(each_fabric_has_numbers_of_its_own), cmocka_unit_test(what_is_said_itself_counts),
+        cmocka_unit_test(stiffness_is_that_of_the_sheet),     cmocka_unit_test(it_lies_as_thick_as_it_is),
         cmocka_unit_test(it_slides_as_its_friction_says),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

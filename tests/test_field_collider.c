@@ -58,8 +58,9 @@ static void a_ball_is_a_sphere(void **state) {
     enum { RINGS = 120 };
     const double flat = 2 * (1 - cos(PI / (2 * RINGS)));
     misfit coarse = misfit_of(0.4, RINGS), middle = misfit_of(0.2, RINGS), fine = misfit_of(0.1, RINGS);
-    print_message("ball: %.2e %.2e %.2e m off, at worst %.2e %.2e %.2e; normals %.2e %.2e %.2e rad\n", coarse.distance, middle.distance,
-                  fine.distance, coarse.worst, middle.worst, fine.worst, coarse.normal, middle.normal, fine.normal);
+    print_message("ball: %.2e %.2e %.2e m off, at worst %.2e %.2e %.2e; normals %.2e %.2e %.2e rad\n", coarse.distance,
+                  middle.distance, fine.distance, coarse.worst, middle.worst, fine.worst, coarse.normal, middle.normal,
+                  fine.normal);
     assert_true(coarse.worst < 0.4 * 0.1 && middle.worst < 0.2 * 0.05 && fine.worst < 0.1 * 0.02);
     assert_true(middle.distance - flat < coarse.distance / 4);
     assert_true(fine.distance - flat < middle.distance / 4);
@@ -72,8 +73,14 @@ static void a_box_is_a_box(void **state) {
     enum { POINTS = 2000 };
     skein_world *world = skein_world_create(NULL, NULL);
     const double middle[3] = {1, 2, -1}, half[3] = {0.5, 0.3, 0.4}, cell = 0.05;
-    skein_handle box, field = add_field(world, make_box(0.5, 0.3, 0.4), SKEIN_SETTINGS(SKEIN_VEC3("position", 1, 2, -1), SKEIN_VEC3("rotation", 0, 90, 0), SKEIN_REAL("scale", 2), SKEIN_REAL("cell", cell)));
-    OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("centre", 1, 2, -1), SKEIN_VEC3("rotation", 0, 90, 0), SKEIN_VEC3("size", 1, 0.6, 0.8)), &box));
+    skein_handle box,
+        field = add_field(world, make_box(0.5, 0.3, 0.4),
+                          SKEIN_SETTINGS(SKEIN_VEC3("position", 1, 2, -1), SKEIN_VEC3("rotation", 0, 90, 0),
+                                         SKEIN_REAL("scale", 2), SKEIN_REAL("cell", cell)));
+    OK(world, skein_collider_add(world, "box",
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 1, 2, -1), SKEIN_VEC3("rotation", 0, 90, 0),
+                                                SKEIN_VEC3("size", 1, 0.6, 0.8)),
+                                 &box));
     static double points[POINTS][3], distance[2][POINTS], normal[2][POINTS][3];
     uint64_t seed = 1;
     for (int i = 0; i < POINTS; i++)
@@ -98,7 +105,8 @@ static void a_box_is_a_box(void **state) {
         }
         // beyond the cubes, which end 2 cells from the box, the foot of one on them stands for the point's own
         double most = distance[1][i] < 2 * cell ? 0.5 * cell : 0.25 * distance[1][i];
-        if (fabs(distance[0][i] - distance[1][i]) > most) print_error("%g for %g at %g %g %g\n", distance[0][i], distance[1][i], own[0], own[1], own[2]);
+        if (fabs(distance[0][i] - distance[1][i]) > most)
+            print_error("%g for %g at %g %g %g\n", distance[0][i], distance[1][i], own[0], own[1], own[2]);
         assert_true(fabs(distance[0][i] - distance[1][i]) <= most);
     }
     assert_true(over_faces > 20 && inside > 100);
@@ -134,9 +142,11 @@ static void what_is_open(void **state) {
     assert_near(distance[3], -0.05, 60 * EPSILON);
     // a box with a mast: cells find the box, and no mast
     solid *mast = make_box(1, 1, 1);
-    static const uint32_t quads[24] = {8, 10, 11, 9, 12, 13, 15, 14, 8, 9, 13, 12, 10, 14, 15, 11, 8, 12, 14, 10, 9, 11, 15, 13};
+    static const uint32_t quads[24] = {8,  10, 11, 9,  12, 13, 15, 14, 8, 9,  13, 12,
+                                       10, 14, 15, 11, 8,  12, 14, 10, 9, 11, 15, 13};
     for (int v = 0; v < 8; v++)
-        mast->position[8 + v][0] = v & 1 ? 0.01 : -0.01, mast->position[8 + v][1] = v & 2 ? 2 : 0.6, mast->position[8 + v][2] = v & 4 ? 0.01 : -0.01;
+        mast->position[8 + v][0] = v & 1 ? 0.01 : -0.01, mast->position[8 + v][1] = v & 2 ? 2 : 0.6,
+                           mast->position[8 + v][2] = v & 4 ? 0.01 : -0.01;
     for (int f = 0; f < 6; f++) mast->size[6 + f] = 4;
     memcpy(mast->corner + 24, quads, sizeof quads);
     close_mesh(mast, 16, 12, 48);
@@ -152,7 +162,8 @@ static void what_is_refused(void **state) {
     solid *s = make_box(1, 1, 1), *sheet = make_sheet(1);
     FAILS(world, SKEIN_ERROR_MESH, "needs a mesh", skein_collider_add(world, "field", NULL, NULL));
     FAILS(world, SKEIN_ERROR_MESH, "type mesh", skein_collider_add_mesh(world, "field", &sheet->mesh, NULL, NULL));
-    FAILS(world, SKEIN_ERROR_MESH, "smaller cells", skein_collider_add_mesh(world, "field", &s->mesh, SKEIN_SETTINGS(SKEIN_REAL("cell", 100)), NULL));
+    FAILS(world, SKEIN_ERROR_MESH, "smaller cells",
+          skein_collider_add_mesh(world, "field", &s->mesh, SKEIN_SETTINGS(SKEIN_REAL("cell", 100)), NULL));
     FAILS(world, SKEIN_ERROR_LIMIT, "distances for a mesh of 1 m",
           skein_collider_add_mesh(world, "field", &s->mesh, SKEIN_SETTINGS(SKEIN_REAL("cell", 1e-3)), NULL));
     assert_int_equal(skein_object_count(world, SKEIN_COLLIDER), 0);
@@ -168,10 +179,13 @@ static void what_is_refused(void **state) {
 
 /* ---- contact ---- */
 
-static skein_world *with_floor(const char *method, double friction, double restitution, double tilt, skein_handle *handle) {
+static skein_world *with_floor(const char *method, double friction, double restitution, double tilt,
+                               skein_handle *handle) {
     skein_world *world = new_world(method, 20);
     add_gravity(world);
-    *handle = add_field(world, make_box(6, 1, 6), SKEIN_SETTINGS(SKEIN_REAL("friction", friction), SKEIN_REAL("restitution", restitution), SKEIN_VEC3("rotation", 0, 0, tilt), SKEIN_REAL("cell", 0.125)));
+    *handle = add_field(world, make_box(6, 1, 6),
+                        SKEIN_SETTINGS(SKEIN_REAL("friction", friction), SKEIN_REAL("restitution", restitution),
+                                       SKEIN_VEC3("rotation", 0, 0, tilt), SKEIN_REAL("cell", 0.125)));
     return world;
 }
 
@@ -251,8 +265,12 @@ static void a_cloth_rests_on_it(void **state) {
     enum { SIDE = 25 };
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
-    add_field(world, make_ball(0.5, 0, 40), SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_REAL("friction", 1), SKEIN_REAL("cell", 0.03)));
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_PAIR("size", 1, 1), SKEIN_VEC3("position", 0, 0.55, 0)), NULL));
+    add_field(world, make_ball(0.5, 0, 40),
+              SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_REAL("friction", 1), SKEIN_REAL("cell", 0.03)));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_PAIR("size", 1, 1),
+                                            SKEIN_VEC3("position", 0, 0.55, 0)),
+                             NULL));
     run(world, 240);
     static double x[SIDE * SIDE][3], v[SIDE * SIDE][3];
     OK(world, skein_positions_copy(world, 0, SIDE * SIDE, x[0]));
@@ -283,17 +301,22 @@ static void nothing_passes(void **state) {
             if (SANITIZED && n % 7) continue;
             skein_world *world = new_world(all_methods[i], 5);
             add_gravity(world);
-            skein_handle plate = add_field(world, make_box(40, 1, 40), SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness), SKEIN_VEC3("rotation", 0, 30, 0), SKEIN_REAL("cell", 0.5), SKEIN_VEC3("motion.velocity", 0, comes ? speed / 2 : 0, 0)));
+            skein_handle plate = add_field(world, make_box(40, 1, 40),
+                                           SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness),
+                                                          SKEIN_VEC3("rotation", 0, 30, 0), SKEIN_REAL("cell", 0.5),
+                                                          SKEIN_VEC3("motion.velocity", 0, comes ? speed / 2 : 0, 0)));
             uint32_t p;
             double x[3];
-            OK(world, skein_particles_add(world, 1, (double[]){0.1, 1, 0.2}, (double[]){side, -speed, 0.3 * side}, (double[]){0.1}, &p));
+            OK(world, skein_particles_add(world, 1, (double[]){0.1, 1, 0.2}, (double[]){side, -speed, 0.3 * side},
+                                          (double[]){0.1}, &p));
             for (int f = 0; f < 12; f++) {
                 run(world, 1);
                 skein_pose pose;
                 place_of(world, x);
                 OK(world, skein_collider_pose(world, plate, &pose));
                 if (!(x[1] - pose.position[1] >= 0.5 - 1e-4))
-                    print_error("%s at %g m/s, %g aslant, thickness %g%s: %g\n", all_methods[i], speed, side, thickness, comes ? ", which comes" : "", x[1] - pose.position[1]);
+                    print_error("%s at %g m/s, %g aslant, thickness %g%s: %g\n", all_methods[i], speed, side, thickness,
+                                comes ? ", which comes" : "", x[1] - pose.position[1]);
                 assert_true(x[1] - pose.position[1] >= 0.5 - 1e-4);
             }
             skein_world_destroy(world);
@@ -310,7 +333,10 @@ static uint64_t hash_with(const char *simd, int threads) {
     unsetenv("SKEIN_SIMD");
     if (!world) return 0;
     add_gravity(world);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 30, 30), SKEIN_PAIR("size", 2, 2), SKEIN_VEC3("position", 0, 1.1, 0)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 30, 30), SKEIN_PAIR("size", 2, 2),
+                                            SKEIN_VEC3("position", 0, 1.1, 0)),
+                             NULL));
     add_field(world, make_ball(0.8, 0.2, 16), SKEIN_SETTINGS(SKEIN_REAL("motion.spin", 1)));
     solid *s = make_ball(0.4, 0, 8);
     s->mesh.face_vertex_count -= 3, s->mesh.face_count--; // open: by winding numbers
@@ -332,9 +358,9 @@ static void the_same_bits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_ball_is_a_sphere),    cmocka_unit_test(a_box_is_a_box), cmocka_unit_test(what_is_open),
-        cmocka_unit_test(what_is_refused),       cmocka_unit_test(rest_slope_and_bounce), cmocka_unit_test(it_carries),
-        cmocka_unit_test(a_cloth_rests_on_it),   cmocka_unit_test(nothing_passes), cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(a_ball_is_a_sphere),  cmocka_unit_test(a_box_is_a_box),        cmocka_unit_test(what_is_open),
+        cmocka_unit_test(what_is_refused),     cmocka_unit_test(rest_slope_and_bounce), cmocka_unit_test(it_carries),
+        cmocka_unit_test(a_cloth_rests_on_it), cmocka_unit_test(nothing_passes),        cmocka_unit_test(the_same_bits),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -159,8 +159,8 @@ static void an_alarm_may_lower_the_limit(void **state) {
     skein_world *world = new_world("symplectic_euler", 1);
     add_moving(world, 1, 1, 0, 0, 0, 5, 0);
     skein_handle hawk;
-    OK(world, skein_force_add(world, "predator",
-                              SKEIN_SETTINGS(SKEIN_REAL("strength", 0), SKEIN_REAL("alarm", -6)), &hawk));
+    OK(world,
+       skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_REAL("strength", 0), SKEIN_REAL("alarm", -6)), &hawk));
     OK(world, skein_force_add(world, "speed_limit", NULL, NULL));
     steps(world, 1, dt);
     assert_near(velocity_of(world, 0).y, 3, 1e-5); // 9 - 6
@@ -212,11 +212,10 @@ static void the_limit_is_raised_in_this_step_only(void **state) {
 
 static void assert_flock_is_that_of_all_pairs(size_t count, double spread, const zones *z, size_t stride) {
     skein_world *world = new_world("symplectic_euler", 1);
-    OK(world,
-       skein_body_add(world, "flock", NULL,
-                      SKEIN_SETTINGS(SKEIN_REAL("count", (double)count),
-                                     SKEIN_VEC3("spread", spread, spread / 2, spread), SKEIN_REAL("speed", 1e-3)),
-                      NULL));
+    OK(world, skein_body_add(world, "flock", NULL,
+                             SKEIN_SETTINGS(SKEIN_REAL("count", (double)count),
+                                            SKEIN_VEC3("spread", spread, spread / 2, spread), SKEIN_REAL("speed", 1e-3)),
+                             NULL));
     add_flocking(world, z);
     vec3 *x = calloc(count, sizeof *x), *v = calloc(count, sizeof *v);
     OK(world, skein_positions_copy(world, 0, count, &x[0].x));

@@ -349,13 +349,13 @@ static void birds_and_cloth_mind_each_other(void **state) {
         double nearest[2], moved[2];
         for (int neighbours = 0; neighbours < 2; neighbours++) {
             skein_world *world = new_world(methods[m], 10);
-            OK(world,
-               skein_body_add(world, "cloth", NULL,
-                              SKEIN_SETTINGS(SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 9, 9),
-                                             SKEIN_PAIR("size", 4, 4), SKEIN_VEC3("rotation", 90, 0, 0),
-                                             SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("stretch.stiffness", 200),
-                                             SKEIN_REAL("shear.stiffness", 20), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
-                              NULL));
+            OK(world, skein_body_add(
+                          world, "cloth", NULL,
+                          SKEIN_SETTINGS(SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 4, 4),
+                                         SKEIN_VEC3("rotation", 90, 0, 0), SKEIN_TEXT("pins", "top edge"),
+                                         SKEIN_REAL("stretch.stiffness", 200), SKEIN_REAL("shear.stiffness", 20),
+                                         SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
+                          NULL));
             size_t cloth = skein_particle_count(world);
             OK(world, skein_body_add(world, "flock", NULL,
                                      SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 50),

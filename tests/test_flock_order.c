@@ -3,8 +3,7 @@
 
 static skein_order order_of(skein_world *world, double group_distance) {
     skein_order o;
-    OK(world,
-       skein_order_measure(world, 0, skein_particle_count(world), (const double[]){0, 0, 0}, group_distance, &o));
+    OK(world, skein_order_measure(world, 0, skein_particle_count(world), (const double[]){0, 0, 0}, group_distance, &o));
     return o;
 }
 

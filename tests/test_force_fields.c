@@ -270,7 +270,8 @@ static uint64_t hash_under(const char *isa, const char *method, int threads) {
     OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 15))));
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_REAL("stretch.stiffness", 20),
-                                            SKEIN_REAL("shear.stiffness", 2), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
+                                            SKEIN_REAL("shear.stiffness", 2), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 1)),
                              NULL));
     OK(world, skein_force_add(world, "potential",
                               SKEIN_SETTINGS(SKEIN_TEXT("energy", "a*sin(5*p.x - t)*cos(p.z) + p.y^2"),
@@ -332,9 +333,10 @@ static void fields_are_probed(void **state) {
     const double points[] = {1, 2, 3, -1, 0.5, 0};
     double forces[6];
     skein_handle field, well, gravity;
-    OK(world, skein_force_add(world, "force_field",
-                              SKEIN_SETTINGS(SKEIN_TEXT("force", "k*vec3(p.y, t, -p.x) - 5*v"), SKEIN_REAL("parameters.k", 2)),
-                              &field));
+    OK(world,
+       skein_force_add(world, "force_field",
+                       SKEIN_SETTINGS(SKEIN_TEXT("force", "k*vec3(p.y, t, -p.x) - 5*v"), SKEIN_REAL("parameters.k", 2)),
+                       &field));
     OK(world, skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "dot(p, p)*p.y")), &well));
     OK(world, skein_force_add(world, "gravity", NULL, &gravity));
     add_particle(world, 1, 9, 9, 9);

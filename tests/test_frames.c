@@ -12,12 +12,16 @@ static skein_world *cloth_beside_ball(const char *method) {
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.12), SKEIN_VEC3("centre", 0.05, -0.3, 0.1)), NULL));
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.12),
+                                                SKEIN_VEC3("centre", 0.05, -0.3, 0.1)),
+                                 NULL));
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS), SKEIN_PAIR("size", 0.5, 0.4),
-                                            SKEIN_VEC3("rotation", 60, 0, 0), SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("density", 4),
-                                            SKEIN_REAL("stretch.stiffness", 60), SKEIN_REAL("stretch.damping", 0.05), SKEIN_REAL("shear.stiffness", 20),
-                                            SKEIN_REAL("shear.damping", 0.02), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 4),
+                             SKEIN_SETTINGS(SKEIN_TEXT("name", "cape"), SKEIN_PAIR("grid", ROWS, COLUMNS),
+                                            SKEIN_PAIR("size", 0.5, 0.4), SKEIN_VEC3("rotation", 60, 0, 0),
+                                            SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("density", 4),
+                                            SKEIN_REAL("stretch.stiffness", 60), SKEIN_REAL("stretch.damping", 0.05),
+                                            SKEIN_REAL("shear.stiffness", 20), SKEIN_REAL("shear.damping", 0.02),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 4),
                                             SKEIN_REAL("bend.damping", 0.01)),
                              NULL));
     return world;
@@ -29,7 +33,9 @@ static skein_world *chain_beside_ball(const char *method) {
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.5)), NULL));
     OK(world, skein_collider_add(world, "capsule",
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.1), SKEIN_VEC3("from", 2, 0, 0), SKEIN_VEC3("to", 2, 1, 1)), NULL));
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", "ball"), SKEIN_REAL("radius", 0.1),
+                                                SKEIN_VEC3("from", 2, 0, 0), SKEIN_VEC3("to", 2, 1, 1)),
+                                 NULL));
     for (int i = 0; i < 5; i++) add_particle(world, i ? 0.2 : 0, 0.04 * i, -0.12 * i, 0.02 * i * i);
     for (uint32_t i = 0; i < 4; i++) add_spring(world, i, i + 1, 400, 2);
     return world;
@@ -41,17 +47,20 @@ static void turn_about_y(double angle, double m[9]) {
 }
 
 static vec3 turned(const double m[9], vec3 p) {
-    return (vec3){m[0] * p.x + m[1] * p.y + m[2] * p.z, m[3] * p.x + m[4] * p.y + m[5] * p.z, m[6] * p.x + m[7] * p.y + m[8] * p.z};
+    return (vec3){m[0] * p.x + m[1] * p.y + m[2] * p.z, m[3] * p.x + m[4] * p.y + m[5] * p.z,
+                  m[6] * p.x + m[7] * p.y + m[8] * p.z};
 }
 
 /* The largest difference from what it would be where nothing moves, taken along. */
-static double difference(const skein_world *moved, const skein_world *still, const double turn[9], vec3 shift, double *of_velocities) {
+static double difference(const skein_world *moved, const skein_world *still, const double turn[9], vec3 shift,
+                         double *of_velocities) {
     double most = 0;
     *of_velocities = 0;
     for (size_t p = 0; p < skein_particle_count(moved); p++) {
         vec3 ought = turned(turn, position_of(still, p));
         most = fmax(most, length3(minus(minus(position_of(moved, p), ought), shift)));
-        *of_velocities = fmax(*of_velocities, length3(minus(velocity_of(moved, p), turned(turn, velocity_of(still, p)))));
+        *of_velocities =
+            fmax(*of_velocities, length3(minus(velocity_of(moved, p), turned(turn, velocity_of(still, p)))));
     }
     return most;
 }
@@ -64,10 +73,13 @@ static void without_inertia_it_is_carried(void **state) {
         skein_world *still = chain_beside_ball(all_methods[m]), *moved = chain_beside_ball(all_methods[m]);
         OK(moved, skein_motion_add(moved, "turn", NULL,
                                    SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_VEC3("centre", 0.3, 0, 0.1),
-                                                  SKEIN_VEC3("axis", 0, 2, 0), SKEIN_REAL("speed", 7), SKEIN_REAL("inertia", 0)),
+                                                  SKEIN_VEC3("axis", 0, 2, 0), SKEIN_REAL("speed", 7),
+                                                  SKEIN_REAL("inertia", 0)),
                                    NULL));
         OK(moved, skein_motion_add(moved, "translate", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_VEC3("velocity", 3, 0.5, -1), SKEIN_REAL("inertia", 0)), NULL));
+                                   SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_VEC3("velocity", 3, 0.5, -1),
+                                                  SKEIN_REAL("inertia", 0)),
+                                   NULL));
         for (int n = 1; n <= 60; n++) {
             steps(still, 1, dt), steps(moved, 1, dt);
             double turn[9], fast;
@@ -97,7 +109,8 @@ static void with_all_inertia_nothing_is_done(void **state) {
         for (int framed = 0; framed < 2; framed++) {
             skein_world *world = cloth_beside_ball(method_names[m]);
             skein_handle motion;
-            OK(world, skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_REAL("speed", 3)), &motion));
+            OK(world, skein_motion_add(world, "turn", NULL,
+                                       SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_REAL("speed", 3)), &motion));
             if (framed) OK(world, skein_set(world, motion, "jump", skein_number(10)));
             steps(world, 40, dt);
             OK(world, skein_positions_copy(world, 0, CLOTH, x[framed]));
@@ -116,7 +129,9 @@ static void a_share_is_left_behind(void **state) {
         add_particle(world, 1, 1, 0, 0);
         add_particle(world, 0, 1, 0, 0);
         OK(world, skein_motion_add(world, "turn", NULL,
-                                   SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0, 0), SKEIN_REAL("speed", 2), SKEIN_REAL("inertia", shares[s])), NULL));
+                                   SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0, 0), SKEIN_REAL("speed", 2),
+                                                  SKEIN_REAL("inertia", shares[s])),
+                                   NULL));
         for (int n = 1; n <= 90; n++) {
             steps(world, 1, dt);
             double angle = (1 - shares[s]) * 2 * n * dt;
@@ -145,7 +160,8 @@ static void a_pendulum_hangs_by_its_share(void **state) {
             uint32_t pin = add_particle(world, 0, 0, 0, 0), bob = add_particle(world, 1, -sin(askew), -cos(askew), 0);
             add_spring(world, pin, bob, 3e3, 30);
             const skein_track track = {&pin, places[0], 1, STEPS + 2, dt};
-            OK(world, skein_motion_add(world, "cache", &track, SKEIN_SETTINGS(SKEIN_REAL("inertia", shares[s]), SKEIN_REAL("fps", 60)), NULL));
+            OK(world, skein_motion_add(world, "cache", &track,
+                                       SKEIN_SETTINGS(SKEIN_REAL("inertia", shares[s]), SKEIN_REAL("fps", 60)), NULL));
             for (int n = 0; n < STEPS; n++) {
                 steps(world, 1, dt);
                 vec3 p = minus(position_of(world, bob), position_of(world, pin));
@@ -166,11 +182,14 @@ static void a_jump_flings_nobody(void **state) {
     for (size_t m = 0; m < COUNT(method_names); m++)
         for (int sort = 0; sort < JUMPS; sort++) {
             skein_world *still = cloth_beside_ball(method_names[m]), *moved = cloth_beside_ball(method_names[m]);
-            skein_handle motion, body = skein_object_at(moved, SKEIN_BODY, 0), ball = skein_object_at(moved, SKEIN_COLLIDER, 0);
+            skein_handle motion, body = skein_object_at(moved, SKEIN_BODY, 0),
+                                 ball = skein_object_at(moved, SKEIN_COLLIDER, 0);
             double turn[9] = {1, 0, 0, 0, 1, 0, 0, 0, 1}, there[9], fast;
             turn_about_y(140 * PI / 180, there);
             if (sort != BY_PROGRAM) {
-                OK(moved, skein_motion_add(moved, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("colliders", "ball")), &motion));
+                OK(moved, skein_motion_add(moved, "keys", NULL,
+                                           SKEIN_SETTINGS(SKEIN_TEXT("keys", keys), SKEIN_TEXT("colliders", "ball")),
+                                           &motion));
                 if (sort == BY_WAY) OK(moved, skein_set(moved, motion, "jump", skein_number(2)));
                 if (sort == BY_TURN) OK(moved, skein_set(moved, motion, "jump_turn", skein_number(45)));
                 if (sort == BY_TIME) OK(moved, skein_set(moved, motion, "jump_times", skein_text("0.1, 0.5001")));
@@ -203,11 +222,17 @@ static void a_collider_goes_with_a_motion(void **state) {
         add_gravity(world);
         skein_handle box;
         OK(world, skein_collider_add(world, "box",
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "lift"), SKEIN_VEC3("centre", 1, -0.5, 0), SKEIN_VEC3("size", 2, 1, 2),
-                                                    SKEIN_REAL("thickness", 0), SKEIN_REAL("friction", 10)),
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "lift"), SKEIN_VEC3("centre", 1, -0.5, 0),
+                                                    SKEIN_VEC3("size", 2, 1, 2), SKEIN_REAL("thickness", 0),
+                                                    SKEIN_REAL("friction", 10)),
                                      &box));
-        OK(world, skein_motion_add(world, "translate", NULL, SKEIN_SETTINGS(SKEIN_TEXT("colliders", "lift"), SKEIN_VEC3("velocity", 1, 2, 0)), NULL));
-        OK(world, skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("name", "off"), SKEIN_REAL("enabled", 0), SKEIN_TEXT("colliders", "lift")), NULL));
+        OK(world,
+           skein_motion_add(world, "translate", NULL,
+                            SKEIN_SETTINGS(SKEIN_TEXT("colliders", "lift"), SKEIN_VEC3("velocity", 1, 2, 0)), NULL));
+        OK(world, skein_motion_add(world, "turn", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("name", "off"), SKEIN_REAL("enabled", 0),
+                                                  SKEIN_TEXT("colliders", "lift")),
+                                   NULL));
         uint32_t p = add_particle(world, 1, 1, 0.0005, 0);
         steps(world, 60, dt);
         skein_pose pose;
@@ -234,7 +259,8 @@ static void pictures_go_on(void **state) {
     skein_world *world = new_world("xpbd", 5);
     add_particle(world, 1, 1, 0, 0);
     skein_handle motion;
-    OK(world, skein_motion_add(world, "translate", NULL, SKEIN_SETTINGS(SKEIN_VEC3("velocity", 6, 0, 0), SKEIN_REAL("inertia", 0.5)), &motion));
+    OK(world, skein_motion_add(world, "translate", NULL,
+                               SKEIN_SETTINGS(SKEIN_VEC3("velocity", 6, 0, 0), SKEIN_REAL("inertia", 0.5)), &motion));
     steps(world, 3, dt);
     vec3 before = position_of(world, 0), shown;
     steps(world, 1, dt);
@@ -257,7 +283,8 @@ static void a_saved_state_goes_on(void **state) {
     for (int i = 0; i < 2; i++) {
         world[i] = cloth_beside_ball("xpbd");
         OK(world[i], skein_motion_add(world[i], "turn", NULL,
-                                      SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "ball"), SKEIN_REAL("speed", 7), SKEIN_REAL("inertia", 0.4)),
+                                      SKEIN_SETTINGS(SKEIN_TEXT("on", "cape"), SKEIN_TEXT("colliders", "ball"),
+                                                     SKEIN_REAL("speed", 7), SKEIN_REAL("inertia", 0.4)),
                                       NULL));
     }
     steps(world[0], 20, dt);
@@ -266,7 +293,8 @@ static void a_saved_state_goes_on(void **state) {
     OK(world[0], skein_snapshot_write(world[0], bytes, size, NULL));
     OK(world[1], skein_snapshot_read(world[1], bytes, size));
     skein_pose pose[2];
-    for (int i = 0; i < 2; i++) OK(world[i], skein_collider_pose(world[i], skein_object_at(world[i], SKEIN_COLLIDER, 0), &pose[i]));
+    for (int i = 0; i < 2; i++)
+        OK(world[i], skein_collider_pose(world[i], skein_object_at(world[i], SKEIN_COLLIDER, 0), &pose[i]));
     assert_memory_equal(&pose[0], &pose[1], sizeof pose[0]);
     for (int i = 0; i < 2; i++) {
         steps(world[i], 20, dt);
@@ -281,11 +309,16 @@ static void what_is_wrong_is_said(void **state) {
     (void)state;
     skein_world *world = cloth_beside_ball("xpbd");
     skein_handle motion, body = skein_object_at(world, SKEIN_BODY, 0);
-    FAILS(world, SKEIN_ERROR_VALUE, "jump_times", skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("jump_times", "1 soon")), NULL));
-    OK(world, skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_TEXT("jump_times", "1, 2.5 3")), &motion));
-    FAILS(world, SKEIN_ERROR_NAME, "no collider of the name 'bull'", skein_set(world, motion, "colliders", skein_text("ball, bull")));
+    FAILS(world, SKEIN_ERROR_VALUE, "jump_times",
+          skein_motion_add(world, "turn", NULL, SKEIN_SETTINGS(SKEIN_TEXT("jump_times", "1 soon")), NULL));
+    OK(world, skein_motion_add(world, "turn", NULL,
+                               SKEIN_SETTINGS(SKEIN_TEXT("colliders", "ball"), SKEIN_TEXT("jump_times", "1, 2.5 3")),
+                               &motion));
+    FAILS(world, SKEIN_ERROR_NAME, "no collider of the name 'bull'",
+          skein_set(world, motion, "colliders", skein_text("ball, bull")));
     FAILS(world, SKEIN_ERROR_VALUE, "-1", skein_set(world, motion, "jump_times", skein_text("-1")));
-    FAILS(world, SKEIN_ERROR_VALUE, "1.5 s comes after 4 s", skein_set(world, motion, "jump_times", skein_text("1, 4 1.5")));
+    FAILS(world, SKEIN_ERROR_VALUE, "1.5 s comes after 4 s",
+          skein_set(world, motion, "jump_times", skein_text("1, 4 1.5")));
     OK(world, skein_set(world, motion, "jump_times", skein_text("0 1, 1 4")));
     FAILS(world, SKEIN_ERROR_VALUE, "", skein_set(world, motion, "inertia", skein_number(1.5)));
     const double mirror[9] = {1, 0, 0, 0, 1, 0, 0, 0, -1}, nowhere[3] = {0, NAN, 0};
@@ -301,11 +334,14 @@ static void what_is_wrong_is_said(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {
-        cmocka_unit_test(without_inertia_it_is_carried), cmocka_unit_test(with_all_inertia_nothing_is_done),
-        cmocka_unit_test(a_share_is_left_behind),        cmocka_unit_test(a_pendulum_hangs_by_its_share),
-        cmocka_unit_test(a_jump_flings_nobody),          cmocka_unit_test(a_collider_goes_with_a_motion),
-        cmocka_unit_test(pictures_go_on),                cmocka_unit_test(a_saved_state_goes_on),
-        cmocka_unit_test(what_is_wrong_is_said)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(without_inertia_it_is_carried),
+                                       cmocka_unit_test(with_all_inertia_nothing_is_done),
+                                       cmocka_unit_test(a_share_is_left_behind),
+                                       cmocka_unit_test(a_pendulum_hangs_by_its_share),
+                                       cmocka_unit_test(a_jump_flings_nobody),
+                                       cmocka_unit_test(a_collider_goes_with_a_motion),
+                                       cmocka_unit_test(pictures_go_on),
+                                       cmocka_unit_test(a_saved_state_goes_on),
+                                       cmocka_unit_test(what_is_wrong_is_said)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

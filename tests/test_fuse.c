@@ -12,8 +12,14 @@ enum { SLOTS = 64 };
 static const double h = 0.01;
 
 static sk_op combine(sk_op_kind kind, sk_vector dst, double a, sk_vector p, double b, sk_vector q) {
-    return (sk_op){.kind = kind, .order = SK_FREE, .kernel = sk_op_types[kind].kernels->version[0], .dst = dst,
-                   .source = {p, q, SK_NONE}, .coefficient = {a, b, 0}, .dt = h, .end = SLOTS};
+    return (sk_op){.kind = kind,
+                   .order = SK_FREE,
+                   .kernel = sk_op_types[kind].kernels->version[0],
+                   .dst = dst,
+                   .source = {p, q, SK_NONE},
+                   .coefficient = {a, b, 0},
+                   .dt = h,
+                   .end = SLOTS};
 }
 
 static const sk_uniform_force falling = {.acceleration = {0, -9.81, 0}, .label = "gravity"};
@@ -27,7 +33,8 @@ typedef struct substep {
 static substep usual(bool pulls, sk_vector looks) {
     sk_op pull = combine(SK_OP_PULL, SK_V, 0, SK_V, 0, SK_NONE);
     pull.rule = &falling;
-    sk_op project = {.kind = SK_OP_PROJECT, .order = SK_ORDERED, .dst = SK_X, .source = {SK_X, looks}, .dt = h, .end = 3};
+    sk_op project = {
+        .kind = SK_OP_PROJECT, .order = SK_ORDERED, .dst = SK_X, .source = {SK_X, looks}, .dt = h, .end = 3};
     substep s = {{{.kind = SK_OP_REPEAT, .end = 10, .dt = h},
                   pulls ? pull : combine(SK_OP_KICK, SK_V, h, SK_V, 0, SK_F),
                   combine(SK_OP_SUM, SK_X0, 1, SK_X, 0, SK_NONE),
@@ -154,7 +161,8 @@ static void every_scene_has_the_same_bits_with_and_without(void **state) {
     DIR *folder = opendir("scenes");
     assert_non_null(folder);
     for (struct dirent *entry; (entry = readdir(folder));) {
-        if (!strstr(entry->d_name, ".json") || strstr(entry->d_name, "elephant") || strstr(entry->d_name, "statue")) continue; // meshes are fetched
+        if (!strstr(entry->d_name, ".json") || strstr(entry->d_name, "elephant") || strstr(entry->d_name, "statue"))
+            continue; // meshes are fetched
         char path[300];
         snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         for (size_t m = 0; m < COUNT(methods); m++) {

@@ -80,7 +80,9 @@ static void contact_agrees_for_every_shape(void **state) {
     // nor does what is fast pass a thin plate or a thin shell
     for (int n = 0; n < 4; n++) {
         world = new_world(method_names[n % 2], 3);
-        skein_setting plate[] = {n / 2 ? (skein_setting)SKEIN_TEXT("surface", "abs(p.y) - 0.0005") : (skein_setting)SKEIN_VEC3("size", 60, 0.001, 60), SKEIN_END};
+        skein_setting plate[] = {n / 2 ? (skein_setting)SKEIN_TEXT("surface", "abs(p.y) - 0.0005")
+                                       : (skein_setting)SKEIN_VEC3("size", 60, 0.001, 60),
+                                 SKEIN_END};
         OK(world, skein_collider_add(world, n / 2 ? "formula" : "box", plate, NULL));
         for (int i = 0; i < 10; i++) add_moving(world, 1, 0.1 * i, 0.3 + 0.1 * i, 0, 3 * i, -40 * i, 0);
         to_card(world);

@@ -41,21 +41,26 @@ static void colliders_travel(void **state) {
         skein_handle ball[2], box[2];
         for (int w = 0; w < 2; w++) {
             world[w] = field_of(explicit_methods[m]);
-            OK(world[w], skein_collider_add(world[w], "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", -3, 0, 0)), &ball[w]));
-            OK(world[w], skein_collider_add(world[w], "box", SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -2, 0), SKEIN_VEC3("size", 4, 1, 4)), &box[w]));
+            OK(world[w],
+               skein_collider_add(world[w], "sphere",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_VEC3("centre", -3, 0, 0)), &ball[w]));
+            OK(world[w], skein_collider_add(world[w], "box",
+                                            SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, -2, 0), SKEIN_VEC3("size", 4, 1, 4)),
+                                            &box[w]));
         }
         to_card(world[1]);
         double slow = difference(world[0], world[1]);
         assert_true(slow == 0);
         for (int step = 1; step <= 12; step++)
             for (int w = 0; w < 2; w++) {
-                if (step > 3) OK(world[w], skein_set(world[w], ball[w], "centre", skein_vector(-3 + 0.4 * (step - 3), 0, 0)));
+                if (step > 3)
+                    OK(world[w], skein_set(world[w], ball[w], "centre", skein_vector(-3 + 0.4 * (step - 3), 0, 0)));
                 if (step > 6) OK(world[w], skein_set(world[w], box[w], "rotation", skein_vector(0, 3 * step, 0)));
                 steps(world[w], 1, dt);
             }
         double off = difference(world[0], world[1]);
         if (!(off <= 2e-3)) fprintf(stderr, "%s is off by %g\n", explicit_methods[m], off);
-        assert_true(off <= 2e-3); // an impact makes much of a rounding
+        assert_true(off <= 2e-3);                                   // an impact makes much of a rounding
         assert_true(statistics_of(world[0]).kinetic_energy > 1000); // some are 24 m/s fast
         for (int w = 0; w < 2; w++) skein_world_destroy(world[w]);
     }

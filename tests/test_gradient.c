@@ -3,9 +3,24 @@
 
 #include "helpers.h"
 
-#define NUMBER(name_, value_) {name_, {1, {value_, 0, 0}, NULL}}
-#define VECTOR(name_, x_, y_, z_) {name_, {3, {x_, y_, z_}, NULL}}
-#define TEXT(name_, text_) {name_, {0, {0, 0, 0}, text_}}
+#define NUMBER(name_, value_)       \
+    {                               \
+        name_, {                    \
+            1, {value_, 0, 0}, NULL \
+        }                           \
+    }
+#define VECTOR(name_, x_, y_, z_) \
+    {                             \
+        name_, {                  \
+            3, {x_, y_, z_}, NULL \
+        }                         \
+    }
+#define TEXT(name_, text_)      \
+    {                           \
+        name_, {                \
+            0, {0, 0, 0}, text_ \
+        }                       \
+    }
 #define SETTINGS(...) ((const skein_setting[]){__VA_ARGS__, {NULL, {0, {0, 0, 0}, NULL}}})
 
 /* In single precision there is nothing to be tried but that it says so. */
@@ -94,7 +109,10 @@ static void a_spring_has_the_gradient_of_its_map(void **state) {
     skein_world *world = one_spring("symplectic_euler", k, c, g);
     uint64_t hash = skein_world_hash(world);
     double by_x[6], by_v[6], by_field[5];
-    skein_gradient_desc desc = {.dt = dt, .steps = steps, .measure = last_x, .user = &steps,
+    skein_gradient_desc desc = {.dt = dt,
+                                .steps = steps,
+                                .measure = last_x,
+                                .user = &steps,
                                 .fields = (const char *const[]){"constraints.0.stiffness", "constraints.0.damping",
                                                                 "forces.0.acceleration", NULL}};
     skein_gradient_result result = {0, by_x, by_v, by_field};
@@ -134,7 +152,10 @@ static void a_rope_has_the_gradient_of_the_branch_it_takes(void **state) {
                                             NUMBER("damping", c)),
                                    NULL));
     double by_x[6], by_v[6], by_field[5];
-    skein_gradient_desc desc = {.dt = dt, .steps = steps, .measure = last_x, .user = &steps,
+    skein_gradient_desc desc = {.dt = dt,
+                                .steps = steps,
+                                .measure = last_x,
+                                .user = &steps,
                                 .fields = (const char *const[]){"constraints.0.stiffness", "constraints.0.damping",
                                                                 "forces.0.acceleration", NULL}};
     skein_gradient_result result = {0, by_x, by_v, by_field};
@@ -150,19 +171,27 @@ static void a_rope_has_the_gradient_of_the_branch_it_takes(void **state) {
 
 enum { SIDE = 20, FRAMES = 120 };
 
-static const char *const fields[] = {"bodies.0.stretch.stiffness", "bodies.0.shear.stiffness", "bodies.0.bend.rigidity",
-                                     "forces.0.acceleration", "forces.1.rate", "bodies.0.stretch.damping", NULL};
+static const char *const fields[] = {"bodies.0.stretch.stiffness",
+                                     "bodies.0.shear.stiffness",
+                                     "bodies.0.bend.rigidity",
+                                     "forces.0.acceleration",
+                                     "forces.1.rate",
+                                     "bodies.0.stretch.damping",
+                                     NULL};
 enum { FIELD_NUMBERS = 8, STEEL = 3 };
 
 /* It swings from its top edge, or its corners: then it folds, and soon no difference of runs is small enough. */
-static skein_world *cloth(const char *method, uint32_t side, int substeps, const char *pins, double drag, double damping) {
+static skein_world *cloth(const char *method, uint32_t side, int substeps, const char *pins, double drag,
+                          double damping) {
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = 1;
     skein_world *world = skein_world_create(&desc, NULL);
     assert_non_null(world);
-    bool solves = !strcmp(method, "backward_euler"); // to the last digits, so that differences of runs are what they seem
+    bool solves =
+        !strcmp(method, "backward_euler"); // to the last digits, so that differences of runs are what they seem
     OK(world, skein_method_set(world, method,
-                               SETTINGS(NUMBER("substeps", substeps), NUMBER(solves ? "tolerance" : "substeps", solves ? 1e-10 : substeps))));
+                               SETTINGS(NUMBER("substeps", substeps),
+                                        NUMBER(solves ? "tolerance" : "substeps", solves ? 1e-10 : substeps))));
     OK(world, skein_body_add(world, "cloth", NULL,
                              SETTINGS({"grid", {2, {side, side, 0}, NULL}}, TEXT("pins", pins),
                                       VECTOR("rotation", 60, 0, 0), NUMBER("stretch.tether", (double)INFINITY),
@@ -198,7 +227,8 @@ static void set_numbers(skein_world *world, const double *numbers) {
 static double run_moved(skein_world *world, weighing *w, double dt, const double *x, const double *v, const double *f,
                         const double *dx, const double *dv, const double *df, double e) {
     size_t count = skein_particle_count(world);
-    double *at = malloc(12 * count * sizeof *at), *speed = at + 3 * count, *by = speed + 3 * count, moved[FIELD_NUMBERS], sum = 0;
+    double *at = malloc(12 * count * sizeof *at), *speed = at + 3 * count, *by = speed + 3 * count,
+           moved[FIELD_NUMBERS], sum = 0;
     OK(world, skein_world_reset(world));
     for (size_t i = 0; i < 3 * count; i++) at[i] = x[i] + e * dx[i], speed[i] = v[i] + e * dv[i];
     for (int i = 0; i < FIELD_NUMBERS; i++) moved[i] = f[i] + e * df[i];
@@ -239,7 +269,8 @@ static double worst_direction(skein_world *world, size_t steps, double dt, bool 
     OK(world, skein_positions_copy(world, 0, count, x));
     OK(world, skein_velocities_copy(world, 0, count, v));
     numbers_of(world, f);
-    skein_gradient_desc desc = {.dt = dt, .steps = steps, .measure = weigh, .user = &w, .fields = fields, .most_bytes = most_bytes};
+    skein_gradient_desc desc = {
+        .dt = dt, .steps = steps, .measure = weigh, .user = &w, .fields = fields, .most_bytes = most_bytes};
     skein_gradient_result result = {0, by_x, by_v, by_f};
     OK(world, skein_gradient(world, &desc, &result));
     assert_int_equal(w.calls, steps + 1);
@@ -257,12 +288,15 @@ static double worst_direction(skein_world *world, size_t steps, double dt, bool 
         }
         for (int k = 0; k < 2; k++) { // two widths, and what they say of none
             double e = 2e-5 / (k + 1);
-            slope[k] = (run_moved(world, &w, dt, x, v, f, dx, dv, df, e) - run_moved(world, &w, dt, x, v, f, dx, dv, df, -e)) / (2 * e);
+            slope[k] =
+                (run_moved(world, &w, dt, x, v, f, dx, dv, df, e) - run_moved(world, &w, dt, x, v, f, dx, dv, df, -e)) /
+                (2 * e);
         }
         double extrapolated = (4 * slope[1] - slope[0]) / 3, least = directions < 20 ? 0.01 * scale : 0,
                error = fabs(extrapolated - ought) / fmax(fabs(ought), least);
         if (getenv("SKEIN_GRADIENT_SAYS"))
-            print_message("direction %d: %.12g, by differences %.12g, off by %.2g (terms of %.3g)\n", d, ought, extrapolated, error, scale);
+            print_message("direction %d: %.12g, by differences %.12g, off by %.2g (terms of %.3g)\n", d, ought,
+                          extrapolated, error, scale);
         worst = fmax(worst, error);
     }
     OK(world, skein_world_reset(world));
@@ -303,7 +337,8 @@ static double run_from(skein_world *world, weighing *w, const char *const *paths
     double *at = malloc(12 * count * sizeof *at), sum = 0;
     OK(world, skein_world_reset(world));
     for (size_t i = 0; i < 6 * count; i++) at[i] = x[i] + e * along[i];
-    for (size_t i = 0; paths[i]; i++) OK(world, skein_set_path(world, paths[i], skein_number(f[i] * (1 + e * along[fields_from + i]))));
+    for (size_t i = 0; paths[i]; i++)
+        OK(world, skein_set_path(world, paths[i], skein_number(f[i] * (1 + e * along[fields_from + i]))));
     OK(world, skein_positions_set(world, 0, count, at));
     OK(world, skein_velocities_set(world, 0, count, at + 3 * count));
     for (size_t step = 0; step <= w->steps; step++) {
@@ -322,7 +357,8 @@ static double run_from(skein_world *world, weighing *w, const char *const *paths
 static double worst_of_small(skein_world *world, const char *const *paths, size_t steps) {
     enum { MOST = 12, MOST_FIELDS = 4 };
     size_t count = skein_particle_count(world), fields_from = 6 * count, n = 0;
-    double x[6 * MOST], by[6 * MOST + MOST_FIELDS], along[6 * MOST + MOST_FIELDS], weights[3 * MOST], f[MOST_FIELDS], worst = 0, most = 0;
+    double x[6 * MOST], by[6 * MOST + MOST_FIELDS], along[6 * MOST + MOST_FIELDS], weights[3 * MOST], f[MOST_FIELDS],
+        worst = 0, most = 0;
     assert_true(count <= MOST);
     for (; paths[n]; n++) {
         skein_value value;
@@ -344,11 +380,13 @@ static double worst_of_small(skein_world *world, const char *const *paths, size_
         }
         for (int k = 0; k < 2; k++) {
             double e = 2e-5 / (k + 1);
-            slope[k] = (run_from(world, &w, paths, x, f, along, e) - run_from(world, &w, paths, x, f, along, -e)) / (2 * e);
+            slope[k] =
+                (run_from(world, &w, paths, x, f, along, e) - run_from(world, &w, paths, x, f, along, -e)) / (2 * e);
         }
         double extrapolated = (4 * slope[1] - slope[0]) / 3;
         worst = fmax(worst, fabs(extrapolated - ought)), most = fmax(most, fabs(ought));
-        if (getenv("SKEIN_GRADIENT_SAYS")) print_message("direction %d: %.12g, by differences %.12g\n", d, ought, extrapolated);
+        if (getenv("SKEIN_GRADIENT_SAYS"))
+            print_message("direction %d: %.12g, by differences %.12g\n", d, ought, extrapolated);
     }
     return worst / most;
 }
@@ -357,7 +395,7 @@ static double worst_of_small(skein_world *world, const char *const *paths, size_
 static void every_kind_agrees_under_projections(void **state) {
     (void)state;
     ONLY_IN_DOUBLE();
-    static const double places[8][3] = {{0, 0, 0}, {1, 0.1, 0}, {0.2, 1, 0.1}, {0.9, 0.8, 0.6},
+    static const double places[8][3] = {{0, 0, 0},       {1, 0.1, 0},     {0.2, 1, 0.1},   {0.9, 0.8, 0.6},
                                         {0.4, 0.3, 1.1}, {1.3, 0.2, 1.2}, {0.1, 1.2, 0.9}, {1.1, 1.3, 1.4}};
     static const struct {
         const char *kind, *text;
@@ -387,7 +425,8 @@ static void every_kind_agrees_under_projections(void **state) {
         uint32_t of[32];
         for (size_t e = 0; e + arity <= 8; e++)
             for (size_t k = 0; k < arity; k++) of[e * arity + k] = (uint32_t)(e + k);
-        const skein_setting settings[] = {NUMBER("stiffness", cases[i].stiffness), NUMBER("damping", c % 2 ? cases[i].damping : 0),
+        const skein_setting settings[] = {NUMBER("stiffness", cases[i].stiffness),
+                                          NUMBER("damping", c % 2 ? cases[i].damping : 0),
                                           cases[i].text ? (skein_setting)TEXT("constraint", cases[i].text)
                                                         : (skein_setting){NULL, {0, {0, 0, 0}, NULL}},
                                           {NULL, {0, {0, 0, 0}, NULL}}};
@@ -402,7 +441,9 @@ static void every_kind_agrees_under_projections(void **state) {
         double worst = worst_of_small(world, paths, 12);
         // a loaded attachment is differentiated beside a kink, in narrower steps
         double most = !strcmp(cases[i].kind, "attachment") ? 1e-6 : 1e-7;
-        if (!(worst < most)) fail_msg("%s %s, %s, is off by %g", cases[i].kind, cases[i].text ? cases[i].text : "", c % 2 ? "three passes" : "one", worst);
+        if (!(worst < most))
+            fail_msg("%s %s, %s, is off by %g", cases[i].kind, cases[i].text ? cases[i].text : "",
+                     c % 2 ? "three passes" : "one", worst);
         skein_world_destroy(world);
     }
 }
@@ -421,7 +462,9 @@ static void projections_agree_with_differences(void **state) {
         OK(world, skein_set_path(world, "method.iterations", skein_number(cases[c].iterations)));
         disturb(world, 0.01);
         double worst = worst_direction(world, 12, 1 / 60.0, c % 2, 4, c % 2);
-        if (!(worst < 1e-6)) fail_msg("%s, %d passes, damping %g: off by %g", cases[c].method, cases[c].iterations, cases[c].damping, worst);
+        if (!(worst < 1e-6))
+            fail_msg("%s, %d passes, damping %g: off by %g", cases[c].method, cases[c].iterations, cases[c].damping,
+                     worst);
         skein_world_destroy(world);
     }
 }
@@ -447,7 +490,8 @@ static void fails(skein_world *world, const char *const *paths, const char *word
     uint64_t hash = skein_world_hash(world);
     assert_true(skein_gradient(world, &desc, &result) != SKEIN_OK);
     const skein_error *error = skein_world_error(world);
-    if (!strstr(error->message, words) && !strstr(error->where, words)) fail_msg("'%s: %s' has no '%s'", error->where, error->message, words);
+    if (!strstr(error->message, words) && !strstr(error->where, words))
+        fail_msg("'%s: %s' has no '%s'", error->where, error->message, words);
     assert_true(hash == skein_world_hash(world));
 }
 
@@ -478,7 +522,8 @@ static void checkpoints_change_nothing(void **state) {
     for (int k = 0; k < 2; k++) {
         by[k] = calloc(6 * count + FIELD_NUMBERS, sizeof **by);
         weighing w = {23, weights, true, 0};
-        skein_gradient_desc desc = {.dt = 0.01, .steps = 23, .measure = weigh, .user = &w, .fields = fields, .most_bytes = k};
+        skein_gradient_desc desc = {
+            .dt = 0.01, .steps = 23, .measure = weigh, .user = &w, .fields = fields, .most_bytes = k};
         skein_gradient_result result = {0, by[k], by[k] + 3 * count, by[k] + 6 * count};
         OK(world, skein_gradient(world, &desc, &result));
     }
@@ -539,7 +584,8 @@ static void three_stiffnesses_are_found(void **state) {
     target t = {places, count};
     double at[3] = {log(100 / 3.0), log(60), log(1e-4 / 3)}, slope[3], inverse[3][3] = {{0}};
     double value = measure_at(world, &t, steps, at, slope);
-    for (int i = 0; i < 3; i++) inverse[i][i] = 0.3 / sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
+    for (int i = 0; i < 3; i++)
+        inverse[i][i] = 0.3 / sqrt(slope[0] * slope[0] + slope[1] * slope[1] + slope[2] * slope[2]);
     int iterations = 0;
     for (; iterations < 20; iterations++) {
         double way[3], next[3], new_slope[3], new_value = 0, part = 1, down = 0;
@@ -573,7 +619,8 @@ static void three_stiffnesses_are_found(void **state) {
         if (found) break;
     }
     for (int i = 0; i < 3; i++)
-        if (!(fabs(at[i] - truth[i]) < 0.01)) fail_msg("%s is found as %g, not %g", fields[i], exp(at[i]), exp(truth[i]));
+        if (!(fabs(at[i] - truth[i]) < 0.01))
+            fail_msg("%s is found as %g, not %g", fields[i], exp(at[i]), exp(truth[i]));
     free(places);
     skein_world_destroy(world);
 }

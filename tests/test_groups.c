@@ -15,15 +15,16 @@ static void lists_are_read(void **state) {
         const char *names, *name;
         bool have;
     } lists[] = {
-        {"a", "a", true},          {"a", "", false},          {"", "", false},        {" , ,", "", false}, {"a, b", "b", true},
-        {" b c ,a ", "b c", true}, {"b c, a", "b", false},    {"ab", "a", false},     {"a", "ab", false},  {"a,b", "a,b", true},
-        {"a,b,c", "a,b", false},   {"x, , b,", "b", true},
+        {"a", "a", true},    {"a", "", false},          {"", "", false},         {" , ,", "", false},
+        {"a, b", "b", true}, {" b c ,a ", "b c", true}, {"b c, a", "b", false},  {"ab", "a", false},
+        {"a", "ab", false},  {"a,b", "a,b", true},      {"a,b,c", "a,b", false}, {"x, , b,", "b", true},
     };
     for (size_t i = 0; i < COUNT(lists); i++)
         if (sk_names_have(lists[i].names, sk_word_of(lists[i].name)) != lists[i].have)
             fail_msg("'%s' in '%s'", lists[i].name, lists[i].names);
     assert_true(sk_names_mean("x, soft", "cape", "clothes, soft") && sk_names_mean("x,cape", "cape", ""));
-    assert_false(sk_names_mean("x, sof", "cape", "clothes, soft") || sk_names_mean("", "", "") || sk_names_mean("x", "", ""));
+    assert_false(sk_names_mean("x, sof", "cape", "clothes, soft") || sk_names_mean("", "", "") ||
+                 sk_names_mean("x", "", ""));
     assert_true(sk_is_called("", "a", sk_word_of("a")) && !sk_is_called("", "a", sk_word_of("")));
 }
 
@@ -33,7 +34,8 @@ enum { A, B, C, BODIES };
 
 /* Three cloths above each other, of which the first and the last are in the group "clothes", and one is "soft" besides. */
 static skein_world *three_cloths(const char *method, int threads) {
-    static const char *const names[BODIES] = {"a", "b", "c"}, *const groups[BODIES] = {"clothes, soft", "alone", "clothes"};
+    static const char *const names[BODIES] = {"a", "b", "c"}, *const groups[BODIES] = {"clothes, soft", "alone",
+                                                                                       "clothes"};
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads;
     skein_world *world = skein_world_create(&desc, NULL);
@@ -41,25 +43,32 @@ static skein_world *three_cloths(const char *method, int threads) {
     OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 12))));
     add_gravity(world);
     for (int b = 0; b < BODIES; b++)
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", names[b]), SKEIN_TEXT("groups", groups[b]), SKEIN_PAIR("grid", 9, 9),
-                                                SKEIN_PAIR("size", 0.4, 0.4), SKEIN_VEC3("position", 0.03 * b, 0.05 * b, 0.01 * b),
-                                                SKEIN_TEXT("pins", b == B ? "top corners" : ""), SKEIN_REAL("stretch.stiffness", 100),
-                                                SKEIN_REAL("shear.stiffness", 30), SKEIN_REAL("bend.stiffness", 0)),
-                                 NULL));
+        OK(world,
+           skein_body_add(
+               world, "cloth", NULL,
+               SKEIN_SETTINGS(SKEIN_TEXT("name", names[b]), SKEIN_TEXT("groups", groups[b]), SKEIN_PAIR("grid", 9, 9),
+                              SKEIN_PAIR("size", 0.4, 0.4), SKEIN_VEC3("position", 0.03 * b, 0.05 * b, 0.01 * b),
+                              SKEIN_TEXT("pins", b == B ? "top corners" : ""), SKEIN_REAL("stretch.stiffness", 100),
+                              SKEIN_REAL("shear.stiffness", 30), SKEIN_REAL("bend.stiffness", 0)),
+               NULL));
     return world;
 }
 
 static void add_rule(skein_world *world, const char *kind, const char *on) {
     if (!strcmp(kind, "plane"))
-        OK(world, skein_collider_add(world, kind, SKEIN_SETTINGS(SKEIN_REAL("offset", -0.05), SKEIN_TEXT("on", on)), NULL));
+        OK(world,
+           skein_collider_add(world, kind, SKEIN_SETTINGS(SKEIN_REAL("offset", -0.05), SKEIN_TEXT("on", on)), NULL));
     else if (!strcmp(kind, "surface_wind"))
-        OK(world, skein_force_add(world, kind, SKEIN_SETTINGS(SKEIN_VEC3("velocity", 3, 1, 2), SKEIN_TEXT("on", on)), NULL));
+        OK(world,
+           skein_force_add(world, kind, SKEIN_SETTINGS(SKEIN_VEC3("velocity", 3, 1, 2), SKEIN_TEXT("on", on)), NULL));
     else if (!strcmp(kind, "contact"))
-        OK(world, skein_force_add(world, kind, SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("on", on)), NULL));
+        OK(world,
+           skein_force_add(world, kind, SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("on", on)), NULL));
     else if (!strcmp(kind, "keys"))
         OK(world, skein_motion_add(world, kind, NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 1 0.5 1 0"), SKEIN_REAL("inertia", 0.3), SKEIN_TEXT("on", on)), NULL));
+                                   SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 1 0.5 1 0"), SKEIN_REAL("inertia", 0.3),
+                                                  SKEIN_TEXT("on", on)),
+                                   NULL));
     else OK(world, skein_force_add(world, kind, SKEIN_SETTINGS(SKEIN_REAL("rate", 3), SKEIN_TEXT("on", on)), NULL));
 }
 
@@ -84,10 +93,12 @@ static void a_group_is_all_that_are_in_it(void **state) {
             for (size_t w = 0; w < COUNT(words); w++) {
                 uint64_t ought = hash_after(method_names[m], kinds[k], words[w].by_name, 1, 40);
                 if (hash_after(method_names[m], kinds[k], words[w].by_group, 1, 40) != ought)
-                    fail_msg("%s under %s: '%s' is not '%s'", kinds[k], method_names[m], words[w].by_group, words[w].by_name);
+                    fail_msg("%s under %s: '%s' is not '%s'", kinds[k], method_names[m], words[w].by_group,
+                             words[w].by_name);
                 // contact and wind of some are felt by all who touch: others may come out the same
                 if (strcmp(kinds[k], "contact") && hash_after(method_names[m], kinds[k], words[w].other, 1, 40) == ought)
-                    fail_msg("%s under %s: '%s' is as '%s'", kinds[k], method_names[m], words[w].other, words[w].by_name);
+                    fail_msg("%s under %s: '%s' is as '%s'", kinds[k], method_names[m], words[w].other,
+                             words[w].by_name);
             }
 }
 
@@ -96,13 +107,17 @@ static skein_world *three_flocks(const char *on, const char *neighbours) {
     skein_world *world = new_world("symplectic_euler", 2);
     for (int b = 0; b < BODIES; b++)
         OK(world, skein_body_add(world, "flock", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", b == A ? "a" : b == B ? "b" : "c"), SKEIN_TEXT("groups", groups[b]),
-                                                SKEIN_REAL("count", 30), SKEIN_VEC3("spread", 2, 2, 2), SKEIN_REAL("speed", 1),
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", b == A   ? "a"
+                                                                   : b == B ? "b"
+                                                                            : "c"),
+                                                SKEIN_TEXT("groups", groups[b]), SKEIN_REAL("count", 30),
+                                                SKEIN_VEC3("spread", 2, 2, 2), SKEIN_REAL("speed", 1),
                                                 SKEIN_REAL("seed", b + 1)),
                                  NULL));
     OK(world, skein_force_add(world, "flocking",
-                              SKEIN_SETTINGS(SKEIN_TEXT("on", on), SKEIN_TEXT("neighbours", neighbours), SKEIN_REAL("separation", 0.5),
-                                             SKEIN_REAL("alignment", 0.5), SKEIN_REAL("cohesion", 1)),
+                              SKEIN_SETTINGS(SKEIN_TEXT("on", on), SKEIN_TEXT("neighbours", neighbours),
+                                             SKEIN_REAL("separation", 0.5), SKEIN_REAL("alignment", 0.5),
+                                             SKEIN_REAL("cohesion", 1)),
                               NULL));
     return world;
 }
@@ -138,12 +153,17 @@ static void motions_lead_groups(void **state) {
         skein_world *world = new_world("xpbd", 2);
         for (int b = 0; b < BODIES; b++)
             OK(world, skein_body_add(world, "rope", NULL,
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", b == A ? "a" : b == B ? "b" : "c"), SKEIN_TEXT("groups", b == B ? "other" : "led"),
-                                                    SKEIN_REAL("count", 5), SKEIN_VEC3("from", 0, b, 0), SKEIN_VEC3("to", 1, b, 0),
-                                                    SKEIN_TEXT("pins", "first, last")),
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", b == A   ? "a"
+                                                                       : b == B ? "b"
+                                                                                : "c"),
+                                                    SKEIN_TEXT("groups", b == B ? "other" : "led"),
+                                                    SKEIN_REAL("count", 5), SKEIN_VEC3("from", 0, b, 0),
+                                                    SKEIN_VEC3("to", 1, b, 0), SKEIN_TEXT("pins", "first, last")),
                                      NULL));
         OK(world, skein_motion_add(world, "translate", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "led"), SKEIN_VEC3("velocity", 0, 0, 3), SKEIN_TEXT("pins", words ? "first" : "")), NULL));
+                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "led"), SKEIN_VEC3("velocity", 0, 0, 3),
+                                                  SKEIN_TEXT("pins", words ? "first" : "")),
+                                   NULL));
         steps(world, 30, dt);
         for (size_t b = 0; b < BODIES; b++) {
             assert_near(position_of(world, 5 * b).z, b == B ? 0 : 1.5, 1e-5);
@@ -162,7 +182,8 @@ static void one_is_not_all(void **state) {
     (void)state;
     skein_world *world = three_cloths("xpbd", 1);
     OK(world, skein_motion_add(world, "attach", NULL, SKEIN_SETTINGS(SKEIN_TEXT("to", "clothes")), NULL));
-    FAILS(world, SKEIN_ERROR_NAME, "'clothes' is a group of bodies: expected the name of one mesh collider", skein_world_step(world, dt));
+    FAILS(world, SKEIN_ERROR_NAME, "'clothes' is a group of bodies: expected the name of one mesh collider",
+          skein_world_step(world, dt));
     skein_world_destroy(world);
 }
 
@@ -172,17 +193,18 @@ static void one_is_not_all(void **state) {
 enum { PILE = 5, CORNERS = 8 };
 
 static skein_world *make_pile(void) {
-    static const double points[CORNERS][3] = {{0, 0, 0}, {0.1, 0, 0}, {0.1, 0, 0.1}, {0, 0, 0.1},
+    static const double points[CORNERS][3] = {{0, 0, 0},    {0.1, 0, 0},    {0.1, 0, 0.1},    {0, 0, 0.1},
                                               {0, 0.05, 0}, {0.1, 0.05, 0}, {0.1, 0.05, 0.1}, {0, 0.05, 0.1}};
     static const uint32_t sizes[] = {4, 4}, corners[] = {0, 1, 2, 3, 4, 5, 6, 7};
     const skein_mesh mesh = {&points[0][0], CORNERS, sizes, 2, corners, 8};
     skein_world *world = new_world("xpbd", 2);
     for (int b = 0; b < PILE; b++) {
         char name[] = {(char)('a' + b), 0};
-        OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_VEC3("position", 0, b, 0)), NULL));
+        OK(world, skein_body_add(world, "cloth", &mesh,
+                                 SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_VEC3("position", 0, b, 0)), NULL));
         for (size_t p = 0; p < CORNERS; p++) // no two lie in one plane, or edge on edge
-            place_particle(world, CORNERS * (size_t)b + p, points[p][0] + 0.003 * b + 0.001 * (double)(p / 4), 0.0008 * (2 * b + (double)(p / 4)),
-                           points[p][2] + 0.002 * b + 0.0007 * (double)(p / 4));
+            place_particle(world, CORNERS * (size_t)b + p, points[p][0] + 0.003 * b + 0.001 * (double)(p / 4),
+                           0.0008 * (2 * b + (double)(p / 4)), points[p][2] + 0.002 * b + 0.0007 * (double)(p / 4));
     }
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.012)), NULL));
     return world;
@@ -236,7 +258,8 @@ static void who_meets_whom_is_as_the_pairs_say(void **state) {
         unsigned groups[PILE];
         char text[200] = "";
         size_t pair[MOST_PAIRS][2], pairs = (size_t)random_between(&seed, 0, MOST_PAIRS + 1);
-        for (size_t b = 0; b < PILE; b++) set_groups(world, b, groups[b] = (unsigned)random_between(&seed, 0, 1 << GROUPS));
+        for (size_t b = 0; b < PILE; b++)
+            set_groups(world, b, groups[b] = (unsigned)random_between(&seed, 0, 1 << GROUPS));
         for (size_t i = 0; i < pairs; i++) {
             for (int k = 0; k < 2; k++)
                 for (bool used = false; !used;) {
@@ -245,7 +268,8 @@ static void who_meets_whom_is_as_the_pairs_say(void **state) {
                 }
             bool alone = random_between(&seed, 0, 1) < 0.2; // a word alone: nobody of it meets anybody of it
             if (alone) pair[i][1] = pair[i][0];
-            sprintf(text + strlen(text), "%s%s%s%s", i ? ", " : "", words[pair[i][0]], alone ? "" : " :", alone ? "" : words[pair[i][1]]);
+            sprintf(text + strlen(text), "%s%s%s%s", i ? ", " : "", words[pair[i][0]], alone ? "" : " :",
+                    alone ? "" : words[pair[i][1]]);
         }
         OK(world, skein_set(world, rule, "ignore", skein_text(text)));
         find_meetings(world, meet);
@@ -258,7 +282,8 @@ static void who_meets_whom_is_as_the_pairs_say(void **state) {
                              !(is_called(a, groups[a], right) && is_called(b, groups[b], left));
                 }
                 if (meet[a][b] != ought)
-                    fail_msg("trial %d, '%s': %c and %c %s", t, text, (char)('a' + a), (char)('a' + b), ought ? "do not meet" : "meet");
+                    fail_msg("trial %d, '%s': %c and %c %s", t, text, (char)('a' + a), (char)('a' + b),
+                             ought ? "do not meet" : "meet");
                 met += ought, ignored += !ought;
             }
     }
@@ -279,7 +304,8 @@ static void long_texts_are_read(void **state) {
     bool meet[PILE][PILE];
     find_meetings(world, meet);
     for (size_t a = 0; a < PILE; a++)
-        for (size_t b = 0; b < PILE; b++) assert_int_equal(meet[a][b], !(a + b == 1 && a != b) && !(a + b == 7 && a >= 3 && b >= 3));
+        for (size_t b = 0; b < PILE; b++)
+            assert_int_equal(meet[a][b], !(a + b == 1 && a != b) && !(a + b == 7 && a >= 3 && b >= 3));
     free(text);
     skein_world_destroy(world);
 }
@@ -289,14 +315,19 @@ static void long_texts_are_read(void **state) {
 /* Three cloths that fall on a plane and on each other, where all that rules name are groups. */
 static skein_world *fall(const char *const groups[BODIES], int threads) {
     skein_world *world = three_cloths("xpbd", threads);
-    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", "ghosts:solid, ghosts")), NULL));
-    OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0.002, 0, 0), SKEIN_TEXT("on", "solid")), NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.02), SKEIN_TEXT("on", "solid, ghosts")), NULL));
+    OK(world, skein_force_add(
+                  world, "contact",
+                  SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", "ghosts:solid, ghosts")), NULL));
+    OK(world, skein_force_add(world, "wind",
+                              SKEIN_SETTINGS(SKEIN_VEC3("force", 0.002, 0, 0), SKEIN_TEXT("on", "solid")), NULL));
+    OK(world, skein_collider_add(world, "plane",
+                                 SKEIN_SETTINGS(SKEIN_REAL("offset", -0.02), SKEIN_TEXT("on", "solid, ghosts")), NULL));
     for (size_t b = 0; b < BODIES; b++)
         OK(world, skein_set(world, skein_object_at(world, SKEIN_BODY, b), "groups", skein_text(groups[b])));
     return world;
 }
-static const char *const before[BODIES] = {"solid", "ghosts", "solid, ghosts"}, *const after[BODIES] = {"ghosts", "solid", "solid"};
+static const char *const before[BODIES] = {"solid", "ghosts", "solid, ghosts"}, *const after[BODIES] = {
+                                                                                    "ghosts", "solid", "solid"};
 
 static void set_all(skein_world *world, const char *const groups[BODIES]) {
     static const char *const paths[BODIES] = {"bodies.a.groups", "bodies.b.groups", "bodies.c.groups"};
@@ -422,7 +453,8 @@ static void groups_may_be_left(void **state) {
     for (int removed = 0; removed < 2; removed++) {
         skein_world *world = three_cloths("symplectic_euler", 1);
         add_rule(world, "drag", "alone"), add_rule(world, "plane", "alone");
-        OK(world, skein_motion_add(world, "translate", NULL, SKEIN_SETTINGS(SKEIN_TEXT("on", "alone"), SKEIN_VEC3("velocity", 0, 1, 0)), NULL));
+        OK(world, skein_motion_add(world, "translate", NULL,
+                                   SKEIN_SETTINGS(SKEIN_TEXT("on", "alone"), SKEIN_VEC3("velocity", 0, 1, 0)), NULL));
         OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "alone:clothes")), NULL));
         skein_handle b = skein_object_at(world, SKEIN_BODY, B);
         steps(world, 3, dt);
@@ -432,9 +464,10 @@ static void groups_may_be_left(void **state) {
         double fast = velocity_of(world, 0).y;
         OK(world, skein_set_path(world, "bodies.a.groups", skein_text("alone")));
         steps(world, 30, dt);
-        assert_near(fast, -9.81 * 6 * dt, 0.02); // nothing held it back
+        assert_near(fast, -9.81 * 6 * dt, 0.02);                 // nothing held it back
         assert_true(velocity_of(world, 0).y > -9.81 / 3 * 1.01); // where drag of 3/s would let it get to
-        FAILS(world, SKEIN_ERROR_NAME, "", (OK(world, skein_set_path(world, "forces.1.on", skein_text("alne"))), skein_world_step(world, dt)));
+        FAILS(world, SKEIN_ERROR_NAME, "",
+              (OK(world, skein_set_path(world, "forces.1.on", skein_text("alne"))), skein_world_step(world, dt)));
         skein_world_destroy(world);
     }
     // a body that only pairs name may go, too
@@ -452,19 +485,25 @@ static void unknown_names_are_told(void **state) {
     for (size_t k = 0; k < COUNT(kinds); k++) {
         skein_world *world = three_cloths("xpbd", 1);
         add_rule(world, kinds[k], "a, clothse");
-        FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?", skein_world_step(world, dt));
+        FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?",
+              skein_world_step(world, dt));
         // a slip in a rule that is not enabled would only be told once it is
-        OK(world, skein_set_path(world, strcmp(kinds[k], "plane") ? "forces.0.enabled" : "colliders.0.enabled", skein_number(0)));
-        FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?", skein_world_step(world, dt));
+        OK(world, skein_set_path(world, strcmp(kinds[k], "plane") ? "forces.0.enabled" : "colliders.0.enabled",
+                                 skein_number(0)));
+        FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'clothse'; did you mean 'clothes'?",
+              skein_world_step(world, dt));
         skein_world_destroy(world);
     }
     skein_world *off = three_cloths("xpbd", 1);
-    OK(off, skein_force_add(off, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "a, alnoe"), SKEIN_REAL("enabled", 0)), NULL));
-    FAILS(off, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?", skein_world_step(off, dt));
+    OK(off, skein_force_add(off, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "a, alnoe"), SKEIN_REAL("enabled", 0)),
+                            NULL));
+    FAILS(off, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?",
+          skein_world_step(off, dt));
     skein_world_destroy(off);
     skein_world *world = three_cloths("xpbd", 1);
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_TEXT("ignore", "clothes:alnoe")), NULL));
-    FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?", skein_world_step(world, dt));
+    FAILS(world, SKEIN_ERROR_NAME, "there is no body or group of the name 'alnoe'; did you mean 'alone'?",
+          skein_world_step(world, dt));
     OK(world, skein_set_path(world, "bodies.a.groups", skein_text("alnoe")));
     steps(world, 1, dt);
     skein_world_destroy(world);

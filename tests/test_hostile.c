@@ -96,7 +96,8 @@ static void texts_that_claim_a_gigabyte(void **state) {
     static const struct {
         const char *name, *text, *words;
     } files[] = {
-        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1000000000\n", ":4: vertex 1000000000 in a face, but the file has 3"},
+        {"a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 1000000000\n",
+         ":4: vertex 1000000000 in a face, but the file has 3"},
         {"a.off", "OFF\n80000000 80000000 0\n0 0 0\n1 0 0\n0 1 0\n", "the file ends after 3 of 80000000 vertices"},
         {"b.off", "OFF\n3 1 0\n0 0 0\n1 0 0\n0 1 0\n250000000 0 1 2\n", ":6: "},
         {"a.ply",
@@ -113,8 +114,10 @@ static void texts_that_claim_a_gigabyte(void **state) {
          "{\"asset\": {\"version\": \"2.0\"}, \"accessors\": [{\"componentType\": 5126, \"count\": 80000000, \"type\": "
          "\"VEC3\"}], \"meshes\": [{\"primitives\": [{\"attributes\": {\"POSITION\": 0}}]}]}",
          "accessor 0 or its view is not as glTF 2.0 has it"},
-        {"grid.json", "{\"bodies\": [{\"type\": \"cloth\", \"grid\": [30000, 30000]}]}", "bodies.0.mesh: 900000000 vertices"},
-        {"rope.json", "{\"bodies\": [{\"type\": \"rope\", \"count\": 1000000000}]}", "bodies.0.count: 1e+09 is out of range"},
+        {"grid.json", "{\"bodies\": [{\"type\": \"cloth\", \"grid\": [30000, 30000]}]}",
+         "bodies.0.mesh: 900000000 vertices"},
+        {"rope.json", "{\"bodies\": [{\"type\": \"rope\", \"count\": 1000000000}]}",
+         "bodies.0.count: 1e+09 is out of range"},
         {"cube.json", "{\"bodies\": [{\"type\": \"lattice\", \"count\": [1000, 1000, 1000]}]}", "bodies.0"},
     };
     static const char cells[] = "80000000 4 0\n1 1 2 3 4\n";
@@ -125,8 +128,9 @@ static void texts_that_claim_a_gigabyte(void **state) {
 
 static void binary_meshes_that_claim_a_gigabyte(void **state) {
     (void)state;
-    static const char places[] = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
-                                 "property float z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
+    static const char places[] =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+        "property float z\nelement face 1\nproperty list uint uint vertex_indices\nend_header\n";
     bytes b = {.size = 0};
     put_text(&b, places), put_floats(&b, 9), put_u32(&b, 250000000), put_u32(&b, 0), put_u32(&b, 1), put_u32(&b, 2);
     REFUSED("the file ends in face 1 of 1", "check", save("a.ply", b.data, b.size));
@@ -160,8 +164,9 @@ static void caches_that_claim_a_gigabyte(void **state) {
     } claims[] = {{9, 9000000, "the header counts 9000000 samples, the file holds 1"},
                   {80000000, 1, "the header counts 1 samples, the file holds 0"},
                   {2000000000, 2000000000, "the header counts 2000000000 samples"}};
-    write_scene(in_folder("a.json"), "{'bodies': [{'type': 'cloth', 'grid': [3, 3], 'pins': 'corners'}], 'motions': [{'type': "
-                                     "'cache', 'file': 'a.pc2'}]}");
+    write_scene(in_folder("a.json"),
+                "{'bodies': [{'type': 'cloth', 'grid': [3, 3], 'pins': 'corners'}], 'motions': [{'type': "
+                "'cache', 'file': 'a.pc2'}]}");
     for (size_t i = 0; i < COUNT(claims); i++) {
         bytes b = {.size = 0};
         put(&b, "POINTCACHE2", 12), put_u32(&b, 1), put_u32(&b, claims[i].points), put_u32(&b, 0);
@@ -288,8 +293,9 @@ static void nodes_are_nested_deep(void **state) {
     stpcpy(at, "{\"mesh\": 0}], \"meshes\": [{\"primitives\": []}]}");
     REFUSED("nodes are nested more than 64 deep", "check", save("deep.gltf", text, strlen(text)));
     free(text);
-    static const char ring[] = "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"children\": "
-                               "[1]}, {\"children\": [0]}]}";
+    static const char ring[] =
+        "{\"asset\": {\"version\": \"2.0\"}, \"scenes\": [{\"nodes\": [0]}], \"nodes\": [{\"children\": "
+        "[1]}, {\"children\": [0]}]}";
     REFUSED("nodes have to be a tree", "check", save("ring.gltf", ring, sizeof ring - 1));
 }
 
@@ -315,11 +321,12 @@ static void what_a_mesh_names_lies_beside_it(void **state) {
     assert_int_equal(symlink("own.bin", in_folder("project/inside.bin")), 0);
     for (size_t i = 0; i < COUNT(buffers); i++) {
         char text[700];
-        snprintf(text, sizeof text,
-                 "{'asset': {'version': '2.0'}, 'buffers': [{'byteLength': 36, 'uri': '%s'}], 'bufferViews': [{'buffer': 0, "
-                 "'byteLength': 36}], 'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}], "
-                 "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}]}",
-                 buffers[i].uri);
+        snprintf(
+            text, sizeof text,
+            "{'asset': {'version': '2.0'}, 'buffers': [{'byteLength': 36, 'uri': '%s'}], 'bufferViews': [{'buffer': 0, "
+            "'byteLength': 36}], 'accessors': [{'bufferView': 0, 'componentType': 5126, 'count': 3, 'type': 'VEC3'}], "
+            "'meshes': [{'primitives': [{'attributes': {'POSITION': 0}}]}]}",
+            buffers[i].uri);
         write_scene(in_folder("project/a.gltf"), text);
         if (buffers[i].words) {
             REFUSED(buffers[i].words, "check", in_folder("project/a.gltf"));
@@ -352,10 +359,11 @@ static void nothing_is_written_outside(void **state) {
     int ought = count_entries(folder);
     for (size_t i = 0; i < COUNT(names); i++) {
         char text[900];
-        snprintf(text, sizeof text,
-                 "{'name': '%s', 'frames': 1, 'output': ['obj', 'pc2', 'mdd', 'glb', 'usda', 'ply', 'stl', 'csv', 'png'], "
-                 "'bodies': [{'type': 'cloth', 'name': '%s', 'grid': [3, 3]}]}",
-                 names[i], names[i]);
+        snprintf(
+            text, sizeof text,
+            "{'name': '%s', 'frames': 1, 'output': ['obj', 'pc2', 'mdd', 'glb', 'usda', 'ply', 'stl', 'csv', 'png'], "
+            "'bodies': [{'type': 'cloth', 'name': '%s', 'grid': [3, 3]}]}",
+            names[i], names[i]);
         write_scene(in_folder("deep/a.json"), text);
         o = SKEIN("run", in_folder("deep/a.json"), "--out", in_folder("deep/out"), "--quiet");
         assert_status(o, 0);

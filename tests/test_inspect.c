@@ -28,8 +28,8 @@ static one make(size_t k, const char *method, const skein_setting *settings) {
     one o = {.world = new_world(method, 1)};
     uint64_t seed = 5 + k;
     OK(o.world, skein_particles_add(o.world, PARTICLES, around, NULL, masses, NULL));
-    OK(o.world, skein_constraint_add(o.world, kind, surface ? tetrahedron : in_order, surface ? 4 : 1, settings,
-                                     &o.constraint));
+    OK(o.world,
+       skein_constraint_add(o.world, kind, surface ? tetrahedron : in_order, surface ? 4 : 1, settings, &o.constraint));
     for (size_t i = 0; i < COORDINATES; i++)
         o.at[i] = around[i] + floor(random_between(&seed, -0.1, 0.1) * 1024) / 1024;
     place(&o, o.at);
@@ -229,9 +229,10 @@ static void what_else_it_says(void **state) {
     (void)state;
     one o = make(0, "xpbd", NULL);
     skein_handle late;
-    OK(o.world, skein_constraint_add(o.world, "formula", in_order, 1,
-                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "late"),
-                                                    SKEIN_TEXT("constraint", "length(p0 - p1) >= 3*t^2")), &late));
+    OK(o.world,
+       skein_constraint_add(
+           o.world, "formula", in_order, 1,
+           SKEIN_SETTINGS(SKEIN_TEXT("name", "late"), SKEIN_TEXT("constraint", "length(p0 - p1) >= 3*t^2")), &late));
     steps(o.world, 3, 0.125);
     double together[COORDINATES] = {0};
     place(&o, together);

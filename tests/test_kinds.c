@@ -358,7 +358,8 @@ static void a_held_sheet_sags_as_a_beam(void **state) {
         double within;
     } ways[] = {{"angle", 0.2}, {"curvature", 0.2}, {"lines", 0.02}};
     for (size_t w = 0; w < COUNT(ways); w++) {
-        double coarse = sag_of("backward_euler", 1, ways[w].by, 5, 12, 0.3), fine = sag_of("backward_euler", 1, ways[w].by, 7, 17, 0.3);
+        double coarse = sag_of("backward_euler", 1, ways[w].by, 5, 12, 0.3),
+               fine = sag_of("backward_euler", 1, ways[w].by, 7, 17, 0.3);
         coarse *= pow(10.0 / 11, 2), fine *= pow(15.0 / 16, 2);
         printf("%s: %.3f, %.3f of the beam's\n", ways[w].by, coarse, fine);
         assert_near(coarse, 1, ways[w].within);
@@ -391,12 +392,14 @@ static void a_large_turn_is_taken_back_by_and_by(void **state) {
         for (int i = 0; i < 3; i++) add_particle(world, 0, i == 1, i == 2 ? -1 : 0, 0);
         add_particle(world, 1, 0.4, height, 0);
         uint32_t hinge[] = {0, 1, 2, 3};
-        OK(world, skein_constraint_add(world, "dihedral", hinge, 1, SKEIN_SETTINGS(SKEIN_REAL("stiffness", HUGE_VAL)), NULL));
+        OK(world,
+           skein_constraint_add(world, "dihedral", hinge, 1, SKEIN_SETTINGS(SKEIN_REAL("stiffness", HUGE_VAL)), NULL));
         OK(world, skein_positions_set(world, 3, 1, (double[]){0.4, height * cos(from), height * sin(from)}));
         steps(world, 1, 0.01);
         vec3 now = position_of(world, 3);
         double by = from - atan2(now.z, now.y), once = atan(c < 4 ? 0.5 : from);
-        assert_near(by, c / 2 == 1 ? once + atan(0.5 * height / hypot(height, 0.5 * height)) : once, c / 2 == 1 ? 0.1 : 1e-5);
+        assert_near(by, c / 2 == 1 ? once + atan(0.5 * height / hypot(height, 0.5 * height)) : once,
+                    c / 2 == 1 ? 0.1 : 1e-5);
         skein_world_destroy(world);
     }
 }
@@ -436,8 +439,7 @@ static void bad_constraints_are_refused(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "names no particle",
           skein_constraint_add(world, "formula", particles, 1, SKEIN_SETTINGS(SKEIN_TEXT("constraint", "t")), NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "named twice", skein_constraint_add(world, "volume", particles, 1, NULL, NULL));
-    OK(world,
-       skein_constraint_arity(world, "formula", SKEIN_SETTINGS(SKEIN_TEXT("constraint", "dot(p0, p4)")), &arity));
+    OK(world, skein_constraint_arity(world, "formula", SKEIN_SETTINGS(SKEIN_TEXT("constraint", "dot(p0, p4)")), &arity));
     assert_int_equal(arity, 5);
     OK(world, skein_constraint_arity(world, "volume", NULL, &arity));
     assert_int_equal(arity, 4);
@@ -457,7 +459,8 @@ static void bad_constraints_are_refused(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_large_turn_is_taken_back_by_and_by), cmocka_unit_test(a_fine_mesh_that_crumples_stays_together),
+        cmocka_unit_test(a_large_turn_is_taken_back_by_and_by),
+        cmocka_unit_test(a_fine_mesh_that_crumples_stays_together),
         cmocka_unit_test(kernels_tapes_and_graphs_agree),
         cmocka_unit_test(a_formula_distance_goes_as_the_built_in_one),
         cmocka_unit_test(an_energy_goes_as_its_constraint),

@@ -20,15 +20,18 @@ static skein_world *make(kind k, const char *pins, skein_handle *body) {
         add_irregular(world, SIDE, SKEIN_SETTINGS(SKEIN_TEXT("pins", pins)));
         *body = skein_object_at(world, SKEIN_BODY, 0);
     } else if (k == ROPE)
-        OK(world, skein_body_add(world, "rope", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", COUNT_OF), SKEIN_TEXT("pins", pins)), body));
+        OK(world, skein_body_add(world, "rope", NULL,
+                                 SKEIN_SETTINGS(SKEIN_REAL("count", COUNT_OF), SKEIN_TEXT("pins", pins)), body));
     else
-        OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins)), body));
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins)), body));
     return world;
 }
 
 static double farthest_from(const skein_world *world, size_t who) {
     double most = 0;
-    for (size_t i = 1; i < skein_particle_count(world); i++) most = fmax(most, length3(minus(position_of(world, i), position_of(world, who))));
+    for (size_t i = 1; i < skein_particle_count(world); i++)
+        most = fmax(most, length3(minus(position_of(world, i), position_of(world, who))));
     return most;
 }
 
@@ -39,7 +42,9 @@ static double lead(skein_world *world, uint32_t who, double speed, int frames) {
     double most = 0;
     for (int frame = 1; frame <= frames; frame++) {
         const double t = frame * dt, way = speed * (t < ramp ? t * t / (2 * ramp) : t - ramp / 2), angle = way / radius;
-        OK(world, skein_pins_move(world, &who, 1, (double[]){at.x + radius * sin(angle), at.y + 0.5 * t, at.z + radius * (1 - cos(angle))}));
+        OK(world,
+           skein_pins_move(world, &who, 1,
+                           (double[]){at.x + radius * sin(angle), at.y + 0.5 * t, at.z + radius * (1 - cos(angle))}));
         steps(world, 1, dt);
         most = fmax(most, farthest_from(world, who));
     }
@@ -184,15 +189,16 @@ static void without_memory_a_step_is_taken_later(void **state) {
         assert_non_null(world);
         add_gravity(world);
         for (int b = 0; b < 2; b++)
-            OK(world, skein_body_add(world, b ? "rope" : "cloth", NULL,
-                                     b ? SKEIN_SETTINGS(SKEIN_REAL("count", 9)) : SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7)), NULL));
+            OK(world, skein_body_add(
+                          world, b ? "rope" : "cloth", NULL,
+                          b ? SKEIN_SETTINGS(SKEIN_REAL("count", 9)) : SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7)), NULL));
         steps(world, 2, dt);
         OK(world, skein_particle_pin(world, 3, true));
         OK(world, skein_particle_pin(world, 38, true));
         const uint64_t before = skein_world_hash(world);
         size_t tries = 0;
-        if (short_of)
-            do left = tries++;
+        if (short_of) do
+                left = tries++;
             while (skein_world_step(world, dt) == SKEIN_ERROR_MEMORY && skein_world_hash(world) == before);
         else steps(world, 1, dt);
         assert_true(!short_of || tries > 10);
@@ -206,9 +212,9 @@ static void without_memory_a_step_is_taken_later(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(who_is_grabbed_draws_all_after_it), cmocka_unit_test(tethers_follow_from_who_is_pinned),
+        cmocka_unit_test(who_is_grabbed_draws_all_after_it),  cmocka_unit_test(tethers_follow_from_who_is_pinned),
         cmocka_unit_test(pins_of_the_start_stay_as_they_are), cmocka_unit_test(a_row_held_later_holds),
-        cmocka_unit_test(what_is_cut_off_is_let_go),         cmocka_unit_test(without_memory_a_step_is_taken_later),
+        cmocka_unit_test(what_is_cut_off_is_let_go),          cmocka_unit_test(without_memory_a_step_is_taken_later),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

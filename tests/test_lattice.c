@@ -96,8 +96,7 @@ static counts expected_between(const int size[3], const int d[3]) {
             if (straight) return (counts){0, 0, 0, 0, 1};
         }
     }
-    return (counts){along == 1 && way == 1, along == 2 && most == 1, along == 3 && most == 1, along == 1 && way == 2,
-                    0};
+    return (counts){along == 1 && way == 1, along == 2 && most == 1, along == 3 && most == 1, along == 1 && way == 2, 0};
 }
 
 static void every_pair_has_its_one_spring(void **state) {

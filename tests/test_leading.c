@@ -35,9 +35,8 @@ static void each_kind_leads_where_it_says(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(all_methods); m++) {
         skein_world *world = three_pins(all_methods[m]);
-        add_motion(
-            world, "translate",
-            SKEIN_SETTINGS(SKEIN_TEXT("on", "line"), SKEIN_VEC3("velocity", 0, 2, 0), SKEIN_REAL("start", 0.25)));
+        add_motion(world, "translate",
+                   SKEIN_SETTINGS(SKEIN_TEXT("on", "line"), SKEIN_VEC3("velocity", 0, 2, 0), SKEIN_REAL("start", 0.25)));
         skein_handle turn = add_motion(world, "turn",
                                        SKEIN_SETTINGS(SKEIN_TEXT("pins", "4, sphere 0 0 0 0.1"),
                                                       SKEIN_REAL("speed", PI / 2), SKEIN_VEC3("centre", 2, 0, 0)));
@@ -143,7 +142,8 @@ static void motions_are_given_what_is_there(void **state) {
     skein_value value;
     skein_handle motion =
         add_motion(world, "translate", SKEIN_SETTINGS(SKEIN_TEXT("on", "line"), SKEIN_VEC3("velocity", 0, 2, 0)));
-    FAILS(world, SKEIN_ERROR_NAME, "no body or group of the name 'lime'", skein_set(world, motion, "on", skein_text("lime")));
+    FAILS(world, SKEIN_ERROR_NAME, "no body or group of the name 'lime'",
+          skein_set(world, motion, "on", skein_text("lime")));
     FAILS(world, SKEIN_ERROR_NAME, "'top edge'", skein_set(world, motion, "pins", skein_text("top edge")));
     FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_set(world, motion, "pins", skein_text("7")));
     OK(world, skein_get(world, motion, "on", &value));
@@ -154,8 +154,8 @@ static void motions_are_given_what_is_there(void **state) {
     check_place(world, 0, 0, 1, 0);
     OK(world, skein_set(world, motion, "pins", skein_text("0, 2")));
     // where it goes to another body, its pins are to be there, too
-    OK(world, skein_body_add(world, "rope", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "short"), SKEIN_REAL("count", 2)), NULL));
+    OK(world,
+       skein_body_add(world, "rope", NULL, SKEIN_SETTINGS(SKEIN_TEXT("name", "short"), SKEIN_REAL("count", 2)), NULL));
     FAILS(world, SKEIN_ERROR_VALUE, "out of range", skein_set(world, motion, "on", skein_text("short")));
     OK(world, skein_set(world, motion, "on", skein_text("")));
     OK(world, skein_set(world, motion, "name", skein_text("lift"))); // which is any
@@ -186,7 +186,8 @@ static skein_world *build(const char *text, told *all) {
     return world;
 }
 
-#define CLOTH "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\", \"groups\": \"held\"}]"
+#define CLOTH \
+    "\"bodies\": [{\"type\": \"cloth\", \"name\": \"flag\", \"grid\": [3, 4], \"pins\": \"left edge\", \"groups\": \"held\"}]"
 
 static void write_cache(const char *path, uint32_t points) {
     skein_error error;
@@ -257,7 +258,8 @@ static void scenes_say_what_is_wrong(void **state) {
          "x.json: motions.0.on: there is no body of the name 'flog'"},
         {"\"type\": \"cache\", \"on\": \"held\", \"file\": \"a\"",
          "x.json: motions.0.on: there is no body of the name 'held'; it is the name of a group, and one body is meant"},
-        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"", "x.json: motions.0.on: there is no body or group of the name 'flog'; did you mean 'flag'?"},
+        {"\"type\": \"turn\", \"name\": \"round\", \"on\": \"flog\"",
+         "x.json: motions.0.on: there is no body or group of the name 'flog'; did you mean 'flag'?"},
     };
     for (size_t i = 0; i < COUNT(faults); i++) {
         char text[600];

@@ -29,7 +29,8 @@ static size_t check_leaves(const sk_skin *skin, size_t triangles, size_t edges) 
         assert_true(leaf->vertices <= 4 && leaf->edges <= 5);
         single += leaf->triangles == 1;
         if (leaf->triangles == 2)
-            assert_int_equal(in_common(skin->triangle[leaf->first_triangle], skin->triangle[leaf->first_triangle + 1]), 2);
+            assert_int_equal(in_common(skin->triangle[leaf->first_triangle], skin->triangle[leaf->first_triangle + 1]),
+                             2);
     }
     assert_int_equal(vertex, skin->vertex_count);
     assert_int_equal(triangle, triangles);
@@ -55,7 +56,8 @@ static void cells_of_a_grid_are_leaves(void **state) {
         skein_world *world = new_world("xpbd", 1);
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", (double)rows, (double)columns),
-                                                SKEIN_PAIR("size", 0.01 * (double)columns, 0.02 * (double)rows)), NULL));
+                                                SKEIN_PAIR("size", 0.01 * (double)columns, 0.02 * (double)rows)),
+                                 NULL));
         const sk_skin *skin = skin_of(world);
         assert_int_equal(skin->leaf_count, cells);
         assert_int_equal(check_leaves(skin, 2 * cells, cells + rows * (columns - 1) + (rows - 1) * columns), 0);
@@ -105,8 +107,12 @@ static void odd_triangles_are_in_leaves_too(void **state) {
     (void)state;
     static const double positions[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, 0.3, 0.8, 0.9, 2, 0, 0};
     static const uint32_t corners[] = {0, 1, 2, 1, 0, 3, 0, 1, 4, 2, 1, 0, 0, 1, 5}, sizes[] = {3, 3, 3, 3, 3};
-    const skein_mesh mesh = {.positions = positions, .vertex_count = 6, .face_sizes = sizes, .face_count = 5,
-                             .face_vertices = corners, .face_vertex_count = 15};
+    const skein_mesh mesh = {.positions = positions,
+                             .vertex_count = 6,
+                             .face_sizes = sizes,
+                             .face_count = 5,
+                             .face_vertices = corners,
+                             .face_vertex_count = 15};
     skein_world *world = new_world("xpbd", 1);
     OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs")), NULL));
     assert_int_equal(check_leaves(skin_of(world), 5, 9), 1);

@@ -5,11 +5,13 @@
 static const double dt = 1.0 / 64;
 
 /* A square sheet of 1 m without any stiffness, so that nothing but its limits acts. */
-static skein_world *limp_sheet(const char *method, int side, const char *pins, double limit, double tether, skein_handle *body) {
+static skein_world *limp_sheet(const char *method, int side, const char *pins, double limit, double tether,
+                               skein_handle *body) {
     skein_world *world = new_world(method, 1);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins), SKEIN_REAL("stretch.stiffness", 0),
-                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins),
+                                            SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("shear.stiffness", 0),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
                                             SKEIN_REAL("stretch.limit", limit), SKEIN_REAL("stretch.tether", tether)),
                              body));
     return world;
@@ -52,7 +54,8 @@ static void limits_leave_alone_what_is_within(void **state) {
     for (size_t m = 0; m < COUNT(method_names); m++) {
         uint64_t hash[2];
         for (int bounded = 0; bounded < 2; bounded++) {
-            skein_world *world = limp_sheet(method_names[m], 3, "0 2", bounded ? 0.3 : INFINITY, bounded ? 0.3 : INFINITY, NULL);
+            skein_world *world =
+                limp_sheet(method_names[m], 3, "0 2", bounded ? 0.3 : INFINITY, bounded ? 0.3 : INFINITY, NULL);
             throw_particle(world, 8, 1, 2, 1);
             throw_particle(world, 4, -1, 2, 0);
             steps(world, 6, dt);
@@ -148,7 +151,7 @@ static void stretch_is_that_of_the_edges(void **state) {
     skein_statistics s = statistics_of(world);
     assert_near(s.max_stretch, 0.5, 4 * EPSILON);
     assert_near(s.p99_stretch, sqrt(0.25 + 0.0625) / 0.5 - 1, 4 * EPSILON); // the next one: there are 12 edges
-    place_particle(world, 2, p.x - 0.1, p.y, p.z); // edges that are too short do not count
+    place_particle(world, 2, p.x - 0.1, p.y, p.z);                          // edges that are too short do not count
     assert_near(statistics_of(world).p99_stretch, 0, 4 * EPSILON);
     skein_world_destroy(world);
 }
@@ -180,8 +183,9 @@ static void a_limit_is_kept_at_rest(void **state) {
         uint32_t rows, columns;
         double stiffness;
         bool mesh;
-    } sheets[] = {{16, 16, 5e3, false}, {16, 16, 1e6, false}, {32, 32, 5e3, false}, {32, 32, 1e6, false}, {60, 20, 2e4, false},
-                  {52, 52, 2e4, false}, {20, 60, 2e4, false}, {16, 16, 5e3, true}, {32, 32, 5e3, true}, {32, 32, 1e6, true}, {57, 57, 2e4, true}, {90, 90, 2e4, true}};
+    } sheets[] = {{16, 16, 5e3, false}, {16, 16, 1e6, false}, {32, 32, 5e3, false}, {32, 32, 1e6, false},
+                  {60, 20, 2e4, false}, {52, 52, 2e4, false}, {20, 60, 2e4, false}, {16, 16, 5e3, true},
+                  {32, 32, 5e3, true},  {32, 32, 1e6, true},  {57, 57, 2e4, true},  {90, 90, 2e4, true}};
     for (size_t i = 0; i < COUNT(sheets); i++) {
         skein_world *world = new_world("xpbd", 10);
         const char *corners = "sphere -0.5 0 -0.5 0.001, sphere 0.5 0 -0.5 0.001";
@@ -191,8 +195,10 @@ static void a_limit_is_kept_at_rest(void **state) {
                                          SKEIN_REAL("stretch.stiffness", sheets[i].stiffness)));
         else
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", sheets[i].rows, sheets[i].columns), SKEIN_REAL("stretch.limit", 0.01),
-                                                    SKEIN_TEXT("pins", "top corners"), SKEIN_REAL("stretch.stiffness", sheets[i].stiffness)), NULL));
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", sheets[i].rows, sheets[i].columns),
+                                                    SKEIN_REAL("stretch.limit", 0.01), SKEIN_TEXT("pins", "top corners"),
+                                                    SKEIN_REAL("stretch.stiffness", sheets[i].stiffness)),
+                                     NULL));
         add_gravity(world);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
         steps(world, 180, 1.0 / 60);
@@ -214,7 +220,9 @@ static void what_hangs_still_has_no_velocity(void **state) {
             for (uint32_t side = 15; side < 60; side += 20) {
                 skein_world *world = new_world("xpbd", substeps);
                 OK(world, skein_body_add(world, "cloth", NULL,
-                                         SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side + 5), SKEIN_TEXT("pins", pins[i]), SKEIN_VEC3("rotation", 80, 0, 0)), NULL));
+                                         SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side + 5), SKEIN_TEXT("pins", pins[i]),
+                                                        SKEIN_VEC3("rotation", 80, 0, 0)),
+                                         NULL));
                 add_gravity(world);
                 OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 3)), NULL));
                 steps(world, 600, 1.0 / 60);
@@ -230,35 +238,46 @@ static void what_hangs_still_has_no_velocity(void **state) {
 enum { AS_BOX, AS_MESH, AS_BODY, AS_BOX_IN_CONTACT, SUPPORTS };
 static void add_support(skein_world *world, int sort, double turn, double spin, double restitution) {
     const double a = turn * PI / 180, low = -0.01 - 0.2 * (cos(a) + sin(a));
-    static const uint32_t sizes[] = {4, 4, 4, 4, 4, 4}, faces[] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 3, 7, 6, 2, 0, 4, 7, 3, 1, 2, 6, 5};
+    static const uint32_t sizes[] = {4, 4, 4, 4, 4, 4},
+                          faces[] = {0, 3, 2, 1, 4, 5, 6, 7, 0, 1, 5, 4, 3, 7, 6, 2, 0, 4, 7, 3, 1, 2, 6, 5};
     static const double unit[] = {-1, -1, -1, 1, -1, -1, 1, 1, -1, -1, 1, -1, -1, -1, 1, 1, -1, 1, 1, 1, 1, -1, 1, 1};
     if (sort == AS_BOX || sort == AS_BOX_IN_CONTACT)
         OK(world, skein_collider_add(world, "box",
-                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("centre", 0, low, 0), SKEIN_VEC3("rotation", turn, 0, 0),
-                                                    SKEIN_REAL("motion.spin", spin), SKEIN_REAL("restitution", restitution), SKEIN_REAL("friction", 0.5)),
+                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("centre", 0, low, 0),
+                                                    SKEIN_VEC3("rotation", turn, 0, 0), SKEIN_REAL("motion.spin", spin),
+                                                    SKEIN_REAL("restitution", restitution), SKEIN_REAL("friction", 0.5)),
                                      NULL));
     if (sort == AS_MESH) {
         double corner[24];
         for (int i = 0; i < 24; i += 3) {
             const double *u = unit + i;
-            corner[i] = 0.2 * u[0], corner[i + 1] = low + 0.2 * (cos(a) * u[1] - sin(a) * u[2]), corner[i + 2] = 0.2 * (sin(a) * u[1] + cos(a) * u[2]);
+            corner[i] = 0.2 * u[0], corner[i + 1] = low + 0.2 * (cos(a) * u[1] - sin(a) * u[2]),
+            corner[i + 2] = 0.2 * (sin(a) * u[1] + cos(a) * u[2]);
         }
-        OK(world, skein_collider_add_mesh(world, "mesh", &(skein_mesh){corner, 8, sizes, 6, faces, 24}, SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
+        OK(world, skein_collider_add_mesh(world, "mesh", &(skein_mesh){corner, 8, sizes, 6, faces, 24},
+                                          SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
     }
     if (sort == AS_BODY)
         OK(world, skein_body_add(world, "lattice", NULL,
-                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 4, 4, 4), SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("position", 0, low, 0),
-                                                SKEIN_VEC3("rotation", turn, 0, 0), SKEIN_TEXT("pins", "all")),
+                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 4, 4, 4), SKEIN_VEC3("size", 0.4, 0.4, 0.4),
+                                                SKEIN_VEC3("position", 0, low, 0), SKEIN_VEC3("rotation", turn, 0, 0),
+                                                SKEIN_TEXT("pins", "all")),
                                  NULL));
-    if (sort >= AS_BODY) OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.005), SKEIN_REAL("friction", 0.5)), NULL));
+    if (sort >= AS_BODY)
+        OK(world, skein_force_add(world, "contact",
+                                  SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.005), SKEIN_REAL("friction", 0.5)), NULL));
 }
 
 /* The largest stretch, and how fast it is at the most, of a sheet that has come to lie on a cube. */
-static double stretch_on(const char *method, int sort, double turn, double spin, double restitution, bool mesh, uint32_t side, double limit,
-                         double stiffness, double *energy) {
+static double stretch_on(const char *method, int sort, double turn, double spin, double restitution, bool mesh,
+                         uint32_t side, double limit, double stiffness, double *energy) {
     skein_world *world = new_world(method, 10);
-    skein_setting settings[] = {SKEIN_REAL("stretch.limit", limit), SKEIN_VEC3("rotation", 0, 20, 0), SKEIN_REAL("stretch.stiffness", stiffness),
-                                SKEIN_VEC3("position", 0.03, 0.006, 0.02), SKEIN_PAIR("grid", side, side), SKEIN_END};
+    skein_setting settings[] = {SKEIN_REAL("stretch.limit", limit),
+                                SKEIN_VEC3("rotation", 0, 20, 0),
+                                SKEIN_REAL("stretch.stiffness", stiffness),
+                                SKEIN_VEC3("position", 0.03, 0.006, 0.02),
+                                SKEIN_PAIR("grid", side, side),
+                                SKEIN_END};
     if (mesh) settings[4] = settings[5]; // which has its own
     if (mesh) add_irregular(world, side, settings);
     else OK(world, skein_body_add(world, "cloth", NULL, settings, NULL));
@@ -283,13 +302,15 @@ static void what_lies_on_corners_keeps_its_limit(void **state) {
         for (int turn = 0; turn < 50; turn += 30)
             for (int mesh = 0; mesh < 2; mesh++) {
                 const double stretch = stretch_on(methods[n % 2], n / 2, turn, 0, 0, mesh, 25, 0.02, 2e4, &energy);
-                print_message("%s, %d, %d deg, %s: %.2f %%, %.2g J\n", methods[n % 2], n / 2, turn, mesh ? "mesh" : "grid", 100 * stretch, energy);
+                print_message("%s, %d, %d deg, %s: %.2f %%, %.2g J\n", methods[n % 2], n / 2, turn,
+                              mesh ? "mesh" : "grid", 100 * stretch, energy);
                 assert_true(stretch <= (mesh ? 0.05 : 0.026) && energy < 0.02);
             }
     const double spun = stretch_on("xpbd", AS_BOX, 0, 1.5, 0, false, 25, 0.02, 2e4, &energy);
     print_message("on a turning box: %.2f %%\n", 100 * spun);
     assert_true(spun <= 0.03);
-    const double bounced = stretch_on("xpbd", AS_BOX, 0, 0, 0.6, false, 25, 0.02, 2e4, &energy); // 20 % where such colliders held nobody
+    const double bounced =
+        stretch_on("xpbd", AS_BOX, 0, 0, 0.6, false, 25, 0.02, 2e4, &energy); // 20 % where such colliders held nobody
     print_message("on a box that lets bounce: %.2f %%\n", 100 * bounced);
     assert_true(bounced <= 0.026);
 }
@@ -304,7 +325,8 @@ static void what_lies_on_corners_is_firm(void **state) {
         for (int mesh = 0; mesh < 2; mesh++)
             for (uint32_t side = 20; side < 30; side += 5) {
                 const double stretch = stretch_on("xpbd", sort, 0, 0, 0, mesh, side, INFINITY, 2e4, &energy);
-                print_message("%d, %u, %s: %.2f %%, %.2g J\n", sort, side, mesh ? "mesh" : "grid", 100 * stretch, energy);
+                print_message("%d, %u, %s: %.2f %%, %.2g J\n", sort, side, mesh ? "mesh" : "grid", 100 * stretch,
+                              energy);
                 assert_true(stretch < 0.07 && energy < 2e-4);
             }
     const double soft = stretch_on("xpbd", AS_BOX, 0, 0, 0, false, 25, INFINITY, 40, &energy);
@@ -357,8 +379,8 @@ static void rounding_makes_no_momentum(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 40);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 11), SKEIN_VEC3("velocity", 0.3, 0.2, 0.1), SKEIN_REAL("stretch.limit", 0),
-                                            SKEIN_REAL("stretch.tether", INFINITY)),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 11), SKEIN_VEC3("velocity", 0.3, 0.2, 0.1),
+                                            SKEIN_REAL("stretch.limit", 0), SKEIN_REAL("stretch.tether", INFINITY)),
                              NULL));
     skein_statistics before = statistics_of(world);
     steps(world, 120, 1.0 / 60);

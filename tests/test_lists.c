@@ -51,7 +51,8 @@ static void springs_agree_with_the_statistics(void **state) {
     skein_world *world = skein_world_create(NULL, NULL);
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 30), SKEIN_TEXT("pins", "top corners"),
-                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
+                                            SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 0)),
                              NULL));
     OK(world, skein_force_add(world, "gravity", NULL, NULL));
     for (int i = 0; i < 20; i++) OK(world, skein_world_step(world, SKEIN_DEFAULT_STEP));
@@ -133,7 +134,8 @@ static void texture_coordinates_are_kept(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "7 corners", skein_body_uv_set(world, body, uv, 7));
     uv[7] = NAN;
     FAILS(world, SKEIN_ERROR_VALUE, "corner 3", skein_body_uv_set(world, body, uv, 6));
-    FAILS(world, SKEIN_ERROR_HANDLE, "no such body", skein_body_uv_set(world, (skein_handle){.index = 9, .generation = 9}, uv, 6));
+    FAILS(world, SKEIN_ERROR_HANDLE, "no such body",
+          skein_body_uv_set(world, (skein_handle){.index = 9, .generation = 9}, uv, 6));
     OK(world, skein_body_surface(world, body, &surface));
     assert_true(surface.corner_uv[7] == 0);
     skein_world_destroy(world);

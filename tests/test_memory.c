@@ -129,8 +129,8 @@ static skein_status make_call(scenario *s) {
         return skein_sparse_solver_set(s->world, &(skein_sparse_solver){"diagonal", s, analyse, factor, solve, NULL});
     case 37:
         return skein_method_set(s->world, "backward_euler",
-                                SKEIN_SETTINGS(SKEIN_TEXT("preconditioner", "cholesky"), SKEIN_REAL("newton_iterations", 1),
-                                               SKEIN_REAL("cg_iterations", 3)));
+                                SKEIN_SETTINGS(SKEIN_TEXT("preconditioner", "cholesky"),
+                                               SKEIN_REAL("newton_iterations", 1), SKEIN_REAL("cg_iterations", 3)));
     case 38: return skein_world_step(s->world, dt);
     case 39: return skein_world_statistics(s->world, &s->statistics);
     default: return SKEIN_ERROR_LIMIT;

@@ -4,11 +4,13 @@
 
 enum { FRAMES = 12 };
 
-static bool add_sheet(skein_world *world, int side, const char *pins, const double at[3], const double turned[3], double down) {
+static bool add_sheet(skein_world *world, int side, const char *pins, const double at[3], const double turned[3],
+                      double down) {
     return !skein_body_add(world, "cloth", NULL,
-                           SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_PAIR("size", 0.4, 0.4), SKEIN_TEXT("pins", pins),
-                                          SKEIN_VEC3("position", at[0], at[1], at[2]),
-                                          SKEIN_VEC3("rotation", turned[0], turned[1], turned[2]), SKEIN_VEC3("velocity", 0, -down, 0)),
+                           SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_PAIR("size", 0.4, 0.4),
+                                          SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", at[0], at[1], at[2]),
+                                          SKEIN_VEC3("rotation", turned[0], turned[1], turned[2]),
+                                          SKEIN_VEC3("velocity", 0, -down, 0)),
                            NULL);
 }
 

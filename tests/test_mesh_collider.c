@@ -23,9 +23,13 @@ static void a_box_is_a_box(void **state) {
     (void)state;
     enum { POINTS = 500 };
     skein_world *world = skein_world_create(NULL, NULL);
-    const skein_setting where[] = {SKEIN_VEC3("position", 1, 2, -1), SKEIN_VEC3("rotation", 20, 30, 40), SKEIN_REAL("scale", 2), SKEIN_END};
+    const skein_setting where[] = {SKEIN_VEC3("position", 1, 2, -1), SKEIN_VEC3("rotation", 20, 30, 40),
+                                   SKEIN_REAL("scale", 2), SKEIN_END};
     skein_handle mesh = add_solid(world, make_box(0.5, 0.3, 0.4), where), box;
-    OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("centre", 1, 2, -1), SKEIN_VEC3("rotation", 20, 30, 40), SKEIN_VEC3("size", 1, 0.6, 0.8)), &box));
+    OK(world, skein_collider_add(world, "box",
+                                 SKEIN_SETTINGS(SKEIN_VEC3("centre", 1, 2, -1), SKEIN_VEC3("rotation", 20, 30, 40),
+                                                SKEIN_VEC3("size", 1, 0.6, 0.8)),
+                                 &box));
     double points[POINTS][3], distance[2][POINTS], normal[2][POINTS][3];
     uint64_t seed = 1;
     for (int i = 0; i < POINTS; i++)
@@ -47,7 +51,8 @@ static void a_box_is_a_box(void **state) {
 
 static double to_segment(const double p[3], const double a[3], const double b[3]) {
     double ab[3], ap[3], square = 0, along = 0, sum = 0;
-    for (int k = 0; k < 3; k++) ab[k] = b[k] - a[k], ap[k] = p[k] - a[k], square += ab[k] * ab[k], along += ab[k] * ap[k];
+    for (int k = 0; k < 3; k++)
+        ab[k] = b[k] - a[k], ap[k] = p[k] - a[k], square += ab[k] * ab[k], along += ab[k] * ap[k];
     double t = fmax(0, fmin(1, along / square));
     for (int k = 0; k < 3; k++) sum += pow(ap[k] - t * ab[k], 2);
     return sqrt(sum);
@@ -60,7 +65,8 @@ static double to_triangle(const double p[3], const double a[3], const double b[3
     double n[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
     double nn = n[0] * n[0] + n[1] * n[1] + n[2] * n[2], up = (n[0] * ap[0] + n[1] * ap[1] + n[2] * ap[2]) / nn;
     double bb = 0, bc = 0, cc = 0, pb = 0, pc = 0;
-    for (int k = 0; k < 3; k++) bb += ab[k] * ab[k], bc += ab[k] * ac[k], cc += ac[k] * ac[k], pb += ap[k] * ab[k], pc += ap[k] * ac[k];
+    for (int k = 0; k < 3; k++)
+        bb += ab[k] * ab[k], bc += ab[k] * ac[k], cc += ac[k] * ac[k], pb += ap[k] * ab[k], pc += ap[k] * ac[k];
     double v = (cc * pb - bc * pc) / (bb * cc - bc * bc), w = (bb * pc - bc * pb) / (bb * cc - bc * bc);
     return v >= 0 && w >= 0 && v + w <= 1 ? fmin(least, fabs(up) * sqrt(nn)) : least;
 }
@@ -83,10 +89,12 @@ static void the_nearest_of_all(void **state) {
         const uint32_t *corner = copy.corner;
         for (size_t f = 0; f < copy.mesh.face_count; corner += copy.size[f++])
             for (uint32_t k = 2; k < copy.size[f]; k++)
-                least = fmin(least, to_triangle(points[i], copy.position[corner[0]], copy.position[corner[k - 1]], copy.position[corner[k]]));
+                least = fmin(least, to_triangle(points[i], copy.position[corner[0]], copy.position[corner[k - 1]],
+                                                copy.position[corner[k]]));
         for (int k = 0; k < 3; k++) r += points[i][k] * points[i][k];
         assert_near(fabs(distance[i]), least, 100 * EPSILON);
-        double a = atan2(flat, points[i][1]), surface = 1 + 0.2 * sin(5 * a) * cos(4 * atan2(points[i][2], points[i][0]));
+        double a = atan2(flat, points[i][1]),
+               surface = 1 + 0.2 * sin(5 * a) * cos(4 * atan2(points[i][2], points[i][0]));
         if (fabs(sqrt(r) - surface) > 0.05) assert_int_equal(distance[i] < 0, sqrt(r) < surface);
         inside += distance[i] < 0;
     }
@@ -132,7 +140,8 @@ static void what_is_open(void **state) {
     skein_handle sheet = add_solid(world, make_sheet(1), NULL);
     double sides[][3] = {{0.1, 0.2, 0}, {0.1, -0.2, 0}, {0.1, 0, 0}};
     OK(world, skein_collider_probe(world, sheet, 3, sides[0], distance, normal[0]));
-    for (int i = 0; i < 2; i++) assert_near(distance[i], 0.2, 10 * EPSILON), assert_near(normal[i][1], i ? -1 : 1, 10 * EPSILON);
+    for (int i = 0; i < 2; i++)
+        assert_near(distance[i], 0.2, 10 * EPSILON), assert_near(normal[i][1], i ? -1 : 1, 10 * EPSILON);
     assert_near(distance[2], 0, 10 * EPSILON);
     assert_near(normal[2][1], 1, 10 * EPSILON);
     // the lower half of a ball, whose faces look down, holds what lies in it
@@ -190,10 +199,12 @@ static void what_is_refused(void **state) {
 
 /* ---- contact ---- */
 
-static skein_world *with_floor(const char *method, solid *floor, double friction, double restitution, double tilt, skein_handle *handle) {
+static skein_world *with_floor(const char *method, solid *floor, double friction, double restitution, double tilt,
+                               skein_handle *handle) {
     skein_world *world = new_world(method, 20);
     add_gravity(world);
-    const skein_setting settings[] = {SKEIN_REAL("friction", friction), SKEIN_REAL("restitution", restitution), SKEIN_VEC3("rotation", 0, 0, tilt), SKEIN_END};
+    const skein_setting settings[] = {SKEIN_REAL("friction", friction), SKEIN_REAL("restitution", restitution),
+                                      SKEIN_VEC3("rotation", 0, 0, tilt), SKEIN_END};
     *handle = add_solid(world, floor, settings);
     return world;
 }
@@ -311,7 +322,8 @@ static void a_program_slides_it(void **state) {
             double x[3];
             uint32_t p;
             const double y = closed ? 0.5 : 0;
-            skein_world *world = with_floor(all_methods[i], closed ? make_box(8, 1, 8) : make_sheet(8), 0.3, 0, 0, &floor);
+            skein_world *world =
+                with_floor(all_methods[i], closed ? make_box(8, 1, 8) : make_sheet(8), 0.3, 0, 0, &floor);
             solid *s = closed ? make_box(8, 1, 8) : make_sheet(8);
             const int count = closed ? 8 : 4;
             double built[8];
@@ -358,7 +370,8 @@ static void a_hole_throws_nobody(void **state) {
             }
             // 1 m/s is half a joule, and that is how they come out; of an implicit solve with up to 2.5
             const double more = strcmp(all_methods[i], "backward_euler") ? 0.6 : 3.5;
-            if (!(most < 9.81 * 0.8 + more)) print_error("%s, %s: %g J/kg\n", all_methods[i], crate ? "a crate" : "a ball", most);
+            if (!(most < 9.81 * 0.8 + more))
+                print_error("%s, %s: %g J/kg\n", all_methods[i], crate ? "a crate" : "a ball", most);
             assert_true(most < 9.81 * 0.8 + more);
             for (uint32_t p = 0; p < 9 && crate; p++) assert_near(position_of(world, p).y, -0.498, 0.001);
             skein_world_destroy(world);
@@ -377,7 +390,8 @@ static void nothing_passes_what_is_led(void **state) {
             const double speed = speeds[n % 3], aside = asides[n / 3 % 2];
             const bool sheet = n / 6;
             skein_world *world = new_world(all_methods[i], 5);
-            skein_handle plate = add_solid(world, sheet ? make_sheet(60) : make_box(60, 0.001, 60), SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.002)));
+            skein_handle plate = add_solid(world, sheet ? make_sheet(60) : make_box(60, 0.001, 60),
+                                           SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.002)));
             solid *s = sheet ? make_sheet(60) : make_box(60, 0.001, 60);
             const int count = sheet ? 4 : 8;
             double built[8][2], x[3];
@@ -392,7 +406,8 @@ static void nothing_passes_what_is_led(void **state) {
                 run(world, 1);
                 place_of(world, x);
                 if (!(x[1] - speed * f / 60 >= -1e-5))
-                    print_error("%s: it comes at %g m/s, %g aside%s\n", all_methods[i], speed, aside, sheet ? ", a sheet" : "");
+                    print_error("%s: it comes at %g m/s, %g aside%s\n", all_methods[i], speed, aside,
+                                sheet ? ", a sheet" : "");
                 assert_true(x[1] - speed * f / 60 >= -1e-5);
             }
             free(s);
@@ -417,14 +432,16 @@ static void nothing_passes(void **state) {
             skein_handle plate = add_solid(world, sheet ? make_sheet(60) : make_box(60, 0.001, 60), settings);
             uint32_t p;
             double x[3];
-            OK(world, skein_particles_add(world, 1, (double[]){0.1, 0.5, 0.2}, (double[]){side, -speed, 0.3 * side}, (double[]){0.1}, &p));
+            OK(world, skein_particles_add(world, 1, (double[]){0.1, 0.5, 0.2}, (double[]){side, -speed, 0.3 * side},
+                                          (double[]){0.1}, &p));
             for (int f = 0; f < 12; f++) {
                 run(world, 1);
                 skein_pose pose;
                 place_of(world, x);
                 OK(world, skein_collider_pose(world, plate, &pose));
                 if (!(x[1] - pose.position[1] >= -1e-5))
-                    print_error("%s at %g m/s, %g aslant, thickness %g%s%s\n", all_methods[i], speed, side, thickness, sheet ? ", a sheet" : "", comes ? ", which comes" : "");
+                    print_error("%s at %g m/s, %g aslant, thickness %g%s%s\n", all_methods[i], speed, side, thickness,
+                                sheet ? ", a sheet" : "", comes ? ", which comes" : "");
                 assert_true(x[1] - pose.position[1] >= -1e-5);
             }
             skein_world_destroy(world);
@@ -441,7 +458,10 @@ static uint64_t hash_with(const char *simd, int threads) {
     unsetenv("SKEIN_SIMD");
     if (!world) return 0;
     add_gravity(world);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 30, 30), SKEIN_PAIR("size", 2, 2), SKEIN_VEC3("position", 0, 1.1, 0)), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 30, 30), SKEIN_PAIR("size", 2, 2),
+                                            SKEIN_VEC3("position", 0, 1.1, 0)),
+                             NULL));
     add_solid(world, make_ball(0.8, 0.2, 16), (skein_setting[]){SKEIN_REAL("motion.spin", 1), SKEIN_END});
     solid *s = make_ball(0.4, 0, 8);
     s->mesh.face_vertex_count -= 3, s->mesh.face_count--; // open: by winding numbers
@@ -463,10 +483,16 @@ static void the_same_bits(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(a_box_is_a_box),        cmocka_unit_test(the_nearest_of_all), cmocka_unit_test(what_is_open),
-        cmocka_unit_test(what_is_refused),       cmocka_unit_test(rest_slope_and_bounce), cmocka_unit_test(it_carries),
-        cmocka_unit_test(a_program_deforms_it),  cmocka_unit_test(a_program_slides_it),
-        cmocka_unit_test(a_hole_throws_nobody),  cmocka_unit_test(nothing_passes),
+        cmocka_unit_test(a_box_is_a_box),
+        cmocka_unit_test(the_nearest_of_all),
+        cmocka_unit_test(what_is_open),
+        cmocka_unit_test(what_is_refused),
+        cmocka_unit_test(rest_slope_and_bounce),
+        cmocka_unit_test(it_carries),
+        cmocka_unit_test(a_program_deforms_it),
+        cmocka_unit_test(a_program_slides_it),
+        cmocka_unit_test(a_hole_throws_nobody),
+        cmocka_unit_test(nothing_passes),
         cmocka_unit_test(nothing_passes_what_is_led),
         cmocka_unit_test(the_same_bits),
     };

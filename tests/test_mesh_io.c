@@ -10,6 +10,7 @@
 
 #include <dirent.h>
 #include <fcntl.h>
+#include <limits.h>
 #include <math.h>
 #include <setjmp.h>
 #include <signal.h>
@@ -18,7 +19,6 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/resource.h>
-#include <limits.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -43,8 +43,7 @@ static int make_folder(void **state) {
 static int remove_folder(void **state) {
     (void)state;
     DIR *open_folder = opendir(folder);
-    if (!open_folder)
-        return -1;
+    if (!open_folder) return -1;
     for (struct dirent *entry; (entry = readdir(open_folder)) != NULL;)
         unlinkat(dirfd(open_folder), entry->d_name, 0); // no directories are made
     closedir(open_folder);
@@ -119,7 +118,6 @@ static void file_faults_are_named(void **state) {
     assert_int_equal(bytes.size, 0);
     assert_string_equal(bytes.data, "");
     io_bytes_free(&bytes);
-
 }
 
 static void a_file_that_may_not_be_read_is_told(void **state) {
@@ -193,14 +191,12 @@ static void large_output_is_whole(void **state) {
     (void)state;
     char *block = malloc(200000);
     assert_non_null(block);
-    for (int i = 0; i < 200000; i++)
-        block[i] = (char)('a' + i % 26);
+    for (int i = 0; i < 200000; i++) block[i] = (char)('a' + i % 26);
     io_output *output = io_output_open(in_folder("large.txt"), NULL);
     assert_non_null(output);
     io_output_write(output, "xxxx", 4);
     io_output_write(output, block, 200000);
-    for (int i = 0; i < 200000; i += 100)
-        io_output_write(output, block + i, 100);
+    for (int i = 0; i < 200000; i += 100) io_output_write(output, block + i, 100);
     io_output_printf(output, "%.5000s", block);
     io_output_patch(output, 1, "yy", 2);
     assert_int_equal(io_output_commit(output, NULL), SKEIN_OK);
@@ -224,20 +220,18 @@ static io_number parse(const char *text, double *value) {
 static const char *next_word(const char **list) {
     static char word[80];
     int used = 0;
-    if (sscanf(*list, "%79s%n", word, &used) != 1)
-        return NULL;
+    if (sscanf(*list, "%79s%n", word, &used) != 1) return NULL;
     *list += used;
     return word;
 }
 
 static void numbers_are_read_exactly(void **state) {
     (void)state;
-    const char *fine =
-        "0 -0 .5 5. +1 -2 1e-3 1E+2 2.e1 00012.50 1e22 1e23 1e-22 1e-23 0.1 8.10109172351e-10 "
-        "123456789.123456789 5e-324 1e-400 1.7976931348623157e308 9007199254740993 "
-        "9007199254740992.999999999999999999999999999999 2.2250738585072011e-308 0e999999999999 "
-        "0.000000000000000000000000000000000000000000012345 "
-        "1234567890123456789012345678901234567890e-40";
+    const char *fine = "0 -0 .5 5. +1 -2 1e-3 1E+2 2.e1 00012.50 1e22 1e23 1e-22 1e-23 0.1 8.10109172351e-10 "
+                       "123456789.123456789 5e-324 1e-400 1.7976931348623157e308 9007199254740993 "
+                       "9007199254740992.999999999999999999999999999999 2.2250738585072011e-308 0e999999999999 "
+                       "0.000000000000000000000000000000000000000000012345 "
+                       "1234567890123456789012345678901234567890e-40";
     const char *none = "+ - . e5 1e 1e+ 1x 1.2.3 --1 0x1 1,5 1d3 +-1 1e5. na in 1/2 infinite";
     const char *not_finite = "nan -NaN inf +Infinity 1e400 -1e309 1.#INF 1.#QNAN -1.#IND nan(ind)";
     double value;
@@ -246,8 +240,7 @@ static void numbers_are_read_exactly(void **state) {
         double expected = strtod(word, NULL);
         assert_memory_equal(&value, &expected, sizeof value);
     }
-    for (const char *word; (word = next_word(&none)) != NULL;)
-        assert_int_equal(parse(word, &value), IO_NUMBER_NONE);
+    for (const char *word; (word = next_word(&none)) != NULL;) assert_int_equal(parse(word, &value), IO_NUMBER_NONE);
     for (const char *word; (word = next_word(&not_finite)) != NULL;)
         assert_int_equal(parse(word, &value), IO_NUMBER_NOT_FINITE);
     assert_int_equal(parse("", &value), IO_NUMBER_NONE);
@@ -278,10 +271,8 @@ static void numbers_agree_with_the_c_library(void **state) {
         uint64_t bits = next_random(&seed);
         double number, value;
         memcpy(&number, &bits, sizeof number);
-        if (i % 2 == 0)
-            number = (double)(int64_t)bits / 1e18;
-        if (!isfinite(number))
-            continue;
+        if (i % 2 == 0) number = (double)(int64_t)bits / 1e18;
+        if (!isfinite(number)) continue;
         char text[512];
         snprintf(text, sizeof text, formats[i % 6], number);
         double expected = strtod(text, NULL);
@@ -291,8 +282,7 @@ static void numbers_agree_with_the_c_library(void **state) {
         uint32_t half = (uint32_t)bits;
         float single, back;
         memcpy(&single, &half, sizeof single);
-        if (!isfinite(single) || single == 0)
-            continue;
+        if (!isfinite(single) || single == 0) continue;
         char printed[IO_FLOAT_SIZE];
         size_t length = io_float_print(single, printed);
         snprintf(text, sizeof text, "%.9g", (double)single);
@@ -305,8 +295,7 @@ static void numbers_agree_with_the_c_library(void **state) {
 
 static void floats_are_printed_plainly(void **state) {
     (void)state;
-    static const float values[] = {0,    -0.0f, 1,    -1,    0.1f,     100,
-                                   1e8f, 1e9f,  0.5f, 1e-4f, 16777216, 0.0009765625f};
+    static const float values[] = {0, -0.0f, 1, -1, 0.1f, 100, 1e8f, 1e9f, 0.5f, 1e-4f, 16777216, 0.0009765625f};
     const char *texts = "0 0 1 -1 0.100000001 100 100000000 1e+09 0.5 9.99999975e-05 16777216 0.0009765625";
     for (size_t i = 0; i < COUNT(values); i++) {
         char text[IO_FLOAT_SIZE];
@@ -333,25 +322,20 @@ static io_mesh read_text(const char *text, bool off, heard *h) {
     skein_error error = {SKEIN_OK, "", ""};
     heard unheard = {0, ""};
     io_warnings warnings = {hear, h ? h : &unheard};
-    skein_status status =
-        (off ? io_off_read : io_obj_read)(text, strlen(text), "text", &mesh, warnings, &error);
-    if (status != SKEIN_OK)
-        fail_msg("%s: %s", error.where, error.message);
-    if (unheard.count > 0)
-        fail_msg("unexpected warning %s", unheard.last);
+    skein_status status = (off ? io_off_read : io_obj_read)(text, strlen(text), "text", &mesh, warnings, &error);
+    if (status != SKEIN_OK) fail_msg("%s: %s", error.where, error.message);
+    if (unheard.count > 0) fail_msg("unexpected warning %s", unheard.last);
     return mesh;
 }
 
 static void expect_mesh(const io_mesh *mesh, size_t vertex_count, const double *positions, size_t face_count,
                         const uint32_t *sizes, const uint32_t *corners) {
     assert_int_equal(mesh->vertex_count, vertex_count);
-    for (size_t i = 0; i < 3 * vertex_count && positions; i++)
-        assert_true(mesh->positions[i] == positions[i]);
+    for (size_t i = 0; i < 3 * vertex_count && positions; i++) assert_true(mesh->positions[i] == positions[i]);
     assert_int_equal(mesh->face_count, face_count);
     assert_memory_equal(mesh->face_sizes, sizes, face_count * sizeof *sizes);
     size_t corner_count = 0;
-    for (size_t f = 0; f < face_count; f++)
-        corner_count += sizes[f];
+    for (size_t f = 0; f < face_count; f++) corner_count += sizes[f];
     assert_int_equal(mesh->face_vertex_count, corner_count);
     assert_memory_equal(mesh->face_vertices, corners, corner_count * sizeof *corners);
 }
@@ -382,8 +366,7 @@ static void every_way_to_write_a_square_is_read(void **state) {
     for (size_t i = 0; i < COUNT(texts); i++) {
         io_mesh mesh = read_text(texts[i], false, NULL);
         expect_mesh(&mesh, 4, square, 2, sizes, corners);
-        for (size_t corner = 0; corner < 6; corner++)
-            assert_int_equal(mesh.face_uvs[corner], IO_NO_UV);
+        for (size_t corner = 0; corner < 6; corner++) assert_int_equal(mesh.face_uvs[corner], IO_NO_UV);
         skein_mesh view = io_mesh_view(&mesh);
         assert_ptr_equal(view.positions, mesh.positions);
         assert_int_equal(view.face_vertex_count, 6);
@@ -421,11 +404,10 @@ static void off_is_read(void **state) {
 static void polygons_and_texture_places_are_kept(void **state) {
     (void)state;
     heard h = {0, ""};
-    io_mesh mesh =
-        read_text("v 0 0 0\nv 1 0 0\nv 2 0 1\nv 1 0 2\nv 0 0 2\nv 9 9 9\n"
-                  "vt 0 .5\nvt 1\nvt 1 1 0\nvt nan 0\n"
-                  "f 1 2 3 4 5\nf 1/1/7 2/2/7 3/-2/7 4/4\nf 1/9 2 3/0\nl 1 2\np 1\nwhat 1 2\nv 1 1 1 2\n",
-                  false, &h);
+    io_mesh mesh = read_text("v 0 0 0\nv 1 0 0\nv 2 0 1\nv 1 0 2\nv 0 0 2\nv 9 9 9\n"
+                             "vt 0 .5\nvt 1\nvt 1 1 0\nvt nan 0\n"
+                             "f 1 2 3 4 5\nf 1/1/7 2/2/7 3/-2/7 4/4\nf 1/9 2 3/0\nl 1 2\np 1\nwhat 1 2\nv 1 1 1 2\n",
+                             false, &h);
     static const uint32_t sizes[] = {5, 4, 3}, corners[] = {0, 1, 2, 3, 4, 0, 1, 2, 3, 0, 1, 2};
     expect_mesh(&mesh, 7, NULL, 3, sizes, corners);
     static const uint32_t uvs[] = {IO_NO_UV, IO_NO_UV, IO_NO_UV, IO_NO_UV, IO_NO_UV, 0,
@@ -435,8 +417,7 @@ static void polygons_and_texture_places_are_kept(void **state) {
     assert_int_equal(mesh.uv_count, 4);
     assert_memory_equal(mesh.uvs, places, sizeof places);
     assert_int_equal(h.count, 4);
-    assert_string_equal(h.last,
-                        "text:10: a texture coordinate that does not exist was left out (3 in the file)");
+    assert_string_equal(h.last, "text:10: a texture coordinate that does not exist was left out (3 in the file)");
     io_mesh_free(&mesh);
 }
 
@@ -478,11 +459,9 @@ static void very_long_lines_are_read(void **state) {
     memset(text + at, 'x', 1000000);
     at += 1000000;
     text[at++] = '\n';
-    for (int i = 0; i < 30000; i++)
-        at += sprintf(text + at, "v %d 0 %d\n", i, i % 7);
+    for (int i = 0; i < 30000; i++) at += sprintf(text + at, "v %d 0 %d\n", i, i % 7);
     at += sprintf(text + at, "f");
-    for (int i = 30000; i > 0; i--)
-        at += sprintf(text + at, " %d", i);
+    for (int i = 30000; i > 0; i--) at += sprintf(text + at, " %d", i);
     io_mesh mesh = read_text(text, false, NULL);
     assert_int_equal(mesh.face_count, 1);
     assert_int_equal(mesh.face_sizes[0], 30000);
@@ -503,73 +482,46 @@ static const struct {
     int line;
     const char *message;
 } bad_meshes[] = {
-    {"accessor_too_long.gltf", 0,
-     "accessor 0 reaches beyond its view or buffer"},
-    {"buffer_cut_off.gltf", 0,
-     "buffer 0 has 36 bytes of the 40 that it promises: it is cut off"},
+    {"accessor_too_long.gltf", 0, "accessor 0 reaches beyond its view or buffer"},
+    {"buffer_cut_off.gltf", 0, "buffer 0 has 36 bytes of the 40 that it promises: it is cut off"},
     {"buffer_elsewhere.gltf", 0,
      "the buffer '../../corpus/mesh/box.bin' is not read: put it into the folder of the file"},
     {"buffer_elsewhere_hidden.gltf", 0,
      "the buffer '%2e%2e%2fmeshes%2fx.bin' is not read: put it into the folder of the file"},
-    {"chunk_cut_off.glb", 0,
-     "the first chunk is no JSON, or is cut off"},
-    {"coordinate_missing.stl", 4,
-     "the line ends where z is expected"},
-    {"coordinate_nan.ply", 11,
-     "vertex 1 has a number that is not finite"},
-    {"coordinate_nan.stl", 0,
-     "triangle 1 of 1 has a coordinate that is not finite"},
-    {"coordinate_word.ply", 11,
-     "'a': expected a number of vertex 1"},
-    {"cut_off.glb", 0,
-     "the file has 22 of the 1000 bytes that its header promises: it is cut off"},
-    {"cut_off.ply", 0,
-     "the file ends in face 1 of 1: it is cut off, or its header is wrong"},
-    {"cut_off.stl", 0,
-     "the header promises 2 triangles, 184 bytes, but the file has 134: it is cut off, or no STL"},
+    {"chunk_cut_off.glb", 0, "the first chunk is no JSON, or is cut off"},
+    {"coordinate_missing.stl", 4, "the line ends where z is expected"},
+    {"coordinate_nan.ply", 11, "vertex 1 has a number that is not finite"},
+    {"coordinate_nan.stl", 0, "triangle 1 of 1 has a coordinate that is not finite"},
+    {"coordinate_word.ply", 11, "'a': expected a number of vertex 1"},
+    {"cut_off.glb", 0, "the file has 22 of the 1000 bytes that its header promises: it is cut off"},
+    {"cut_off.ply", 0, "the file ends in face 1 of 1: it is cut off, or its header is wrong"},
+    {"cut_off.stl", 0, "the header promises 2 triangles, 184 bytes, but the file has 134: it is cut off, or no STL"},
     {"extension_needed.gltf", 0,
      "it needs the extension 'KHR_draco_mesh_compression', which is not read: save the mesh without (no compression)"},
     {"face_with_vertex_twice.ply", 13,
      "vertex 1 twice in one face: expected different corners (a hole must be cut open)"},
-    {"faces_cut_off.ply", 0,
-     "the file ends in face 1 of 1: it is cut off, or its header is wrong"},
-    {"flat.stl", 0,
-     "no triangles in the file but such with two corners at one place"},
-    {"format_unknown.ply", 2,
-     "'binary': expected the format ascii, binary_little_endian or binary_big_endian"},
-    {"index_out_of_range.ply", 13,
-     "face 0 has a corner that is no vertex"},
-    {"no_end_of_header.ply", 5,
-     "the header has no end: expected 'end_header'"},
+    {"faces_cut_off.ply", 0, "the file ends in face 1 of 1: it is cut off, or its header is wrong"},
+    {"flat.stl", 0, "no triangles in the file but such with two corners at one place"},
+    {"format_unknown.ply", 2, "'binary': expected the format ascii, binary_little_endian or binary_big_endian"},
+    {"index_out_of_range.ply", 13, "face 0 has a corner that is no vertex"},
+    {"no_end_of_header.ply", 5, "the header has no end: expected 'end_header'"},
     {"no_faces.ply", 7,
      "the header promises no faces (a list 'vertex_indices'): points alone, and strips of triangles, are not read"},
-    {"no_mesh.gltf", 0,
-     "no triangles in the file"},
-    {"nodes_in_a_ring.gltf", 0,
-     "node 0 is in the scene twice: nodes have to be a tree"},
-    {"not_json.gltf", 1,
-     "the JSON of the file: unexpected token near end of file"},
-    {"points_only.gltf", 0,
-     "no triangles in the file, only points or lines"},
-    {"promises_too_much.ply", 0,
-     "the file ends in vertex 4 of 4000000000: it is cut off, or its header is wrong"},
-    {"short.stl", 0,
-     "5 bytes are no STL file: expected 'solid', or at least 84 bytes"},
-    {"text_cut_off.stl", 9,
-     "the file ends after 1 triangles, without 'endsolid': it is cut off"},
-    {"two_corners.ply", 0,
-     "byte 214: face 0 has fewer than three corners, or one of them twice"},
-    {"type_unknown.ply", 4,
-     "'half': expected a type: char, uchar, short, ushort, int, uint, float or double"},
-    {"version_1.gltf", 0,
-     "glTF of version 1.0: expected glTF 2.0"},
-    {"word_missing.stl", 3,
-     "'vertex': expected 'outer'"},
+    {"no_mesh.gltf", 0, "no triangles in the file"},
+    {"nodes_in_a_ring.gltf", 0, "node 0 is in the scene twice: nodes have to be a tree"},
+    {"not_json.gltf", 1, "the JSON of the file: unexpected token near end of file"},
+    {"points_only.gltf", 0, "no triangles in the file, only points or lines"},
+    {"promises_too_much.ply", 0, "the file ends in vertex 4 of 4000000000: it is cut off, or its header is wrong"},
+    {"short.stl", 0, "5 bytes are no STL file: expected 'solid', or at least 84 bytes"},
+    {"text_cut_off.stl", 9, "the file ends after 1 triangles, without 'endsolid': it is cut off"},
+    {"two_corners.ply", 0, "byte 214: face 0 has fewer than three corners, or one of them twice"},
+    {"type_unknown.ply", 4, "'half': expected a type: char, uchar, short, ushort, int, uint, float or double"},
+    {"version_1.gltf", 0, "glTF of version 1.0: expected glTF 2.0"},
+    {"word_missing.stl", 3, "'vertex': expected 'outer'"},
     {"binary.obj", 1, "the line begins with '?PNG': the file is binary or damaged, expected OBJ text"},
     {"binary.off", 1, "binary OFF is not read: save the mesh as text"},
     {"coordinate_1e400.obj", 2, "x is '1e400': expected a finite number"},
-    {"coordinate_decimal_comma.obj", 2,
-     "x is '1,5': expected a number such as 0.5, -2 or 1e-3 (a point, not a comma)"},
+    {"coordinate_decimal_comma.obj", 2, "x is '1,5': expected a number such as 0.5, -2 or 1e-3 (a point, not a comma)"},
     {"coordinate_minus_inf.obj", 1, "z is '-inf': expected a finite number"},
     {"coordinate_msvc_inf.obj", 2, "z is '1.#INF': expected a finite number"},
     {"coordinate_nan.obj", 2, "y is 'nan': expected a finite number"},
@@ -578,12 +530,10 @@ static const struct {
     {"empty.obj", 0, "the file is empty: expected a mesh"},
     {"ending_unknown.3ds", 0, "not a mesh file by its ending: expected .obj, .off, .ply, .stl, .glb, .gltf or .node"},
     {"face_cut_off.obj", 6, "a face of 2 corners: expected 3 or more; the file ends here, is it cut off?"},
-    {"face_cut_off.off", 8,
-     "the line ends after 2 of a face's 3 corners; the file ends here, is it cut off?"},
+    {"face_cut_off.off", 8, "the line ends after 2 of a face's 3 corners; the file ends here, is it cut off?"},
     {"face_of_two_corners.obj", 6, "a face of 2 corners: expected 3 or more"},
     {"face_of_two_corners.off", 8, "a face of 2 corners: expected 3 or more"},
-    {"face_with_bad_corner.obj", 5,
-     "a face's corner is '1/1/1/1': expected one such as 7, 7/2, 7//3 or 7/2/3"},
+    {"face_with_bad_corner.obj", 5, "a face's corner is '1/1/1/1': expected one such as 7, 7/2, 7//3 or 7/2/3"},
     {"face_with_vertex_twice.obj", 5,
      "vertex 2 twice in one face: expected different corners (a hole must be cut open)"},
     {"face_with_vertex_twice.off", 8,
@@ -591,13 +541,10 @@ static const struct {
     {"faces_cut_off.off", 8, "the file ends after 1 of 2 faces: it is cut off, or its header is wrong"},
     {"four_coordinates.off", 1,
      "the file begins with '4OFF': expected OFF, COFF or NOFF, with three coordinates a vertex"},
-    {"header_cut_off.off", 2,
-     "the header is not complete: expected the numbers of vertices, faces and edges"},
-    {"header_promises_more_vertices.off", 7,
-     "vertex 4 of 5 has 4 numbers: expected 3; is the header's number right?"},
+    {"header_cut_off.off", 2, "the header is not complete: expected the numbers of vertices, faces and edges"},
+    {"header_promises_more_vertices.off", 7, "vertex 4 of 5 has 4 numbers: expected 3; is the header's number right?"},
     {"header_without_numbers.off", 2, "the number of vertices is 'four': expected a whole number"},
-    {"index_huge.obj", 5,
-     "a face's corner is '99999999999999999999': a mesh has at most 4294967294 vertices"},
+    {"index_huge.obj", 5, "a face's corner is '99999999999999999999': a mesh has at most 4294967294 vertices"},
     {"index_negative.off", 8, "a face's corner is '-1': expected a whole number"},
     {"index_out_of_range.obj", 6, "vertex 5 in a face, but the file has 4 vertices"},
     {"index_out_of_range.off", 8, "vertex 4 in a face, but the file has 4 vertices, 0 to 3"},
@@ -615,10 +562,8 @@ static const struct {
     {"vertex_cut_off.obj", 3,
      "a vertex of 2 numbers: expected x y z, perhaps with a weight or a colour; the file ends here, is it "
      "cut off?"},
-    {"vertex_of_five_numbers.obj", 2,
-     "a vertex of 5 numbers: expected x y z, perhaps with a weight or a colour"},
-    {"vertex_of_two_numbers.obj", 2,
-     "a vertex of 2 numbers: expected x y z, perhaps with a weight or a colour"},
+    {"vertex_of_five_numbers.obj", 2, "a vertex of 5 numbers: expected x y z, perhaps with a weight or a colour"},
+    {"vertex_of_two_numbers.obj", 2, "a vertex of 2 numbers: expected x y z, perhaps with a weight or a colour"},
     {"vertices_cut_off.off", 5, "the file ends after 2 of 4 vertices: it is cut off, or its header is wrong"},
 };
 
@@ -628,8 +573,7 @@ static void bad_meshes_are_refused_by_file_and_line(void **state) {
         char path[1024], place[100];
         snprintf(path, sizeof path, SKEIN_SOURCE_DIR "/tests/bad/meshes/%s", bad_meshes[i].name);
         int length = snprintf(place, sizeof place, "/meshes/%s:%d", bad_meshes[i].name, bad_meshes[i].line);
-        if (bad_meshes[i].line == 0)
-            place[length -= 2] = '\0';
+        if (bad_meshes[i].line == 0) place[length -= 2] = '\0';
         io_mesh mesh;
         skein_error error = {SKEIN_OK, "", ""};
         skein_status status = io_mesh_read(path, &mesh, (io_warnings){NULL, NULL}, &error);
@@ -643,8 +587,7 @@ static void bad_meshes_are_refused_by_file_and_line(void **state) {
     DIR *bad = opendir(SKEIN_SOURCE_DIR "/tests/bad/meshes");
     assert_non_null(bad);
     size_t count = 0;
-    for (struct dirent *entry; (entry = readdir(bad)) != NULL;)
-        count += entry->d_name[0] != '.';
+    for (struct dirent *entry; (entry = readdir(bad)) != NULL;) count += entry->d_name[0] != '.';
     closedir(bad);
     assert_int_equal(count, COUNT(bad_meshes));
 }
@@ -692,8 +635,8 @@ static void flat_meshes_have_exact_normals(void **state) {
 /* A 1 x 2 x 3 box of quads, or with every quad cut: its corner at the origin has 2, 1 and 1 triangles. */
 #define BOX "v 0 0 0\nv 1 0 0\nv 1 2 0\nv 0 2 0\nv 0 0 3\nv 1 0 3\nv 1 2 3\nv 0 2 3\n"
 #define BOX_QUADS "f 1 4 3 2\nf 5 6 7 8\nf 1 2 6 5\nf 4 8 7 3\nf 1 5 8 4\nf 2 3 7 6\n"
-#define BOX_CUT                                                                                              \
-    "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 5\nf 2 6 5\nf 4 8 7\nf 4 7 3\nf 1 5 4\nf 5 8 4\nf 2 3 7\nf "  \
+#define BOX_CUT                                                                                             \
+    "f 1 4 3\nf 1 3 2\nf 5 6 7\nf 5 7 8\nf 1 2 5\nf 2 6 5\nf 4 8 7\nf 4 7 3\nf 1 5 4\nf 5 8 4\nf 2 3 7\nf " \
     "2 7 6\n"
 
 static void a_box_has_the_normals_of_the_formulas(void **state) {
@@ -729,15 +672,13 @@ static void odd_faces_do_no_harm(void **state) {
     double normals[27];
     // An L with a reflex corner at vertex 4, bent up nowhere; 7 lies on no face; 8 and 9 only on one without
     // area.
-    io_mesh mesh =
-        read_text("v 0 0 0\nv 0 0 2\nv 1 0 2\nv 1 0 1\nv 2 0 1\nv 2 0 0\nv 5 5 5\nv 1 0 0\nv 3 0 0\n"
-                  "f 1 2 3 4 5 6\nf 1 8 9\n",
-                  false, NULL);
+    io_mesh mesh = read_text("v 0 0 0\nv 0 0 2\nv 1 0 2\nv 1 0 1\nv 2 0 1\nv 2 0 0\nv 5 5 5\nv 1 0 0\nv 3 0 0\n"
+                             "f 1 2 3 4 5 6\nf 1 8 9\n",
+                             false, NULL);
     skein_mesh view = io_mesh_view(&mesh);
     for (int mode = 0; mode < 3; mode++) {
         assert_int_equal(skein_mesh_normals(&view, (skein_normals)mode, normals, NULL), SKEIN_OK);
-        for (int v = 0; v < 9; v++)
-            expect_normal(normals + 3 * v, 0, 1, 0);
+        for (int v = 0; v < 9; v++) expect_normal(normals + 3 * v, 0, 1, 0);
     }
     io_mesh_free(&mesh);
 
@@ -773,9 +714,8 @@ static void obj_is_written_as_promised(void **state) {
     broken[4] = 1e300;
     mesh.positions = broken;
     assert_int_equal(io_obj_write(in_folder("out.obj"), &mesh, SKEIN_NORMALS_AREA, &error), SKEIN_ERROR_VALUE);
-    assert_string_equal(error.message,
-                        "not written: vertex 1 is at (1, 1e+300, 0), which is not finite as a float "
-                        "(has the motion blown up?)");
+    assert_string_equal(error.message, "not written: vertex 1 is at (1, 1e+300, 0), which is not finite as a float "
+                                       "(has the motion blown up?)");
     assert_int_equal(count_files(".part"), 0);
 }
 
@@ -801,8 +741,7 @@ static void obj_round_trip_keeps_all(void **state) {
     io_mesh back;
     assert_int_equal(io_mesh_read(in_folder("trip.obj"), &back, (io_warnings){NULL, NULL}, NULL), SKEIN_OK);
     expect_mesh(&back, VERTICES, NULL, FACES, mesh.face_sizes, mesh.face_vertices);
-    for (size_t i = 0; i < 3 * VERTICES; i++)
-        assert_true((float)back.positions[i] == (float)mesh.positions[i]);
+    for (size_t i = 0; i < 3 * VERTICES; i++) assert_true((float)back.positions[i] == (float)mesh.positions[i]);
     io_mesh_free(&back);
     io_mesh_free(&mesh);
 }
@@ -826,8 +765,7 @@ static void pc2_has_the_bytes_of_the_format(void **state) {
         io_pc2_header header = {2, 1, 2, known ? 2 : IO_PC2_UNKNOWN};
         io_pc2_writer *writer = io_pc2_create(in_folder("run.pc2"), header, &error);
         assert_non_null(writer);
-        for (int frame = 0; frame < 2; frame++)
-            assert_int_equal(io_pc2_add(writer, frames[frame], &error), SKEIN_OK);
+        for (int frame = 0; frame < 2; frame++) assert_int_equal(io_pc2_add(writer, frames[frame], &error), SKEIN_OK);
         assert_int_equal(io_pc2_commit(writer, &error), SKEIN_OK);
         io_bytes bytes = read_all(in_folder("run.pc2"));
         assert_int_equal(bytes.size, sizeof expected - 1);
@@ -843,8 +781,7 @@ static void pc2_has_the_bytes_of_the_format(void **state) {
     for (uint32_t frame = 2; frame-- > 0;) {
         double positions[6];
         assert_int_equal(io_pc2_read(reader, frame, positions, &error), SKEIN_OK);
-        for (int i = 0; i < 6; i++)
-            assert_true(positions[i] == frames[frame][i]);
+        for (int i = 0; i < 6; i++) assert_true(positions[i] == frames[frame][i]);
     }
     assert_int_equal(io_pc2_read(reader, 2, (double[6]){0}, &error), SKEIN_ERROR_VALUE);
     io_pc2_close(reader);
@@ -874,24 +811,20 @@ static void pc2_faults_are_named(void **state) {
     enum { POINTS = 10000 };
     double *positions = malloc(3 * POINTS * sizeof *positions);
     assert_non_null(positions);
-    for (int i = 0; i < 3 * POINTS; i++)
-        positions[i] = i;
+    for (int i = 0; i < 3 * POINTS; i++) positions[i] = i;
     writer = io_pc2_create(path, (io_pc2_header){POINTS, 0, 1, IO_PC2_UNKNOWN}, &error);
-    for (int frame = 0; frame < 3; frame++)
-        assert_int_equal(io_pc2_add(writer, positions, &error), SKEIN_OK);
+    for (int frame = 0; frame < 3; frame++) assert_int_equal(io_pc2_add(writer, positions, &error), SKEIN_OK);
     assert_int_equal(io_pc2_commit(writer, &error), SKEIN_OK);
     io_pc2_reader *reader = io_pc2_open(path, &header, &error);
     assert_non_null(reader);
     memset(positions, 0, 3 * POINTS * sizeof *positions);
     assert_int_equal(io_pc2_read(reader, 2, positions, &error), SKEIN_OK);
-    for (int i = 0; i < 3 * POINTS; i++)
-        assert_true(positions[i] == i);
+    for (int i = 0; i < 3 * POINTS; i++) assert_true(positions[i] == i);
     io_pc2_close(reader);
     free(positions);
     assert_int_equal(truncate(path, 32 + 3 * POINTS * 12 - 1), 0);
     assert_null(io_pc2_open(path, &header, &error));
-    assert_string_equal(error.message,
-                        "the header counts 3 samples, the file holds 2 and a part of one: it is cut off");
+    assert_string_equal(error.message, "the header counts 3 samples, the file holds 2 and a part of one: it is cut off");
 }
 
 /* ---- A full disk --------------------------------------------------------------------------- */
@@ -929,13 +862,12 @@ static void a_limit_leaves_nothing_half_written(void **state) {
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &low), 0);
     skein_error error, pc2_error;
     skein_status status = io_obj_write(old_path, &view, SKEIN_NORMALS_AREA, &error);
-    io_pc2_writer *writer = io_pc2_create(
-        new_path, (io_pc2_header){(uint32_t)mesh.vertex_count, 0, 1, IO_PC2_UNKNOWN}, &pc2_error);
+    io_pc2_writer *writer =
+        io_pc2_create(new_path, (io_pc2_header){(uint32_t)mesh.vertex_count, 0, 1, IO_PC2_UNKNOWN}, &pc2_error);
     skein_status add_status = SKEIN_OK, commit_status = SKEIN_OK;
     for (int frame = 0; frame < 20 && add_status == SKEIN_OK && writer; frame++)
         add_status = io_pc2_add(writer, mesh.positions, &pc2_error);
-    if (writer)
-        commit_status = io_pc2_commit(writer, &pc2_error);
+    if (writer) commit_status = io_pc2_commit(writer, &pc2_error);
     assert_int_equal(setrlimit(RLIMIT_FSIZE, &before), 0);
 
     assert_int_equal(status, SKEIN_ERROR_FILE);
@@ -975,8 +907,9 @@ static void obj_keeps_what_is_said_of_faces(void **state) {
     assert_non_null(strstr(warning, "its 2 objects become one body; save each as a file of its own"));
     skein_mesh view = io_mesh_view(&mesh);
     assert_true(io_mesh_has_faces_of(&mesh, &view));
-    assert_int_equal(io_obj_write_as(in_folder("kept.obj"), &view, SKEIN_NORMALS_AREA, &mesh, in_folder("said.obj"), &error),
-                     SKEIN_OK);
+    assert_int_equal(
+        io_obj_write_as(in_folder("kept.obj"), &view, SKEIN_NORMALS_AREA, &mesh, in_folder("said.obj"), &error),
+        SKEIN_OK);
     io_bytes bytes = read_all(in_folder("kept.obj"));
     snprintf(ought, sizeof ought,
              "vt 0 0\nvt 1 0.25\nvt 1 1\nvt 0 0\n"

@@ -169,9 +169,8 @@ static void a_chain_hangs_as_a_catenary(void **state) {
             add_particle(world, i && i < LINKS ? 0.02 : 0, x, i % 2 ? -rise : 0, 0);
             if (i) pairs[2 * i - 2] = i - 1, pairs[2 * i - 1] = i;
         }
-        OK(world,
-           skein_constraint_add(world, "distance", pairs, LINKS,
-                                SKEIN_SETTINGS(SKEIN_REAL("stiffness", 5000), SKEIN_REAL("damping", 0.7)), NULL));
+        OK(world, skein_constraint_add(world, "distance", pairs, LINKS,
+                                       SKEIN_SETTINGS(SKEIN_REAL("stiffness", 5000), SKEIN_REAL("damping", 0.7)), NULL));
         steps(world, 180, 1.0 / 60);
         assert_under(statistics_of(world).kinetic_energy, 1e-4);
         assert_share(-position_of(world, LINKS / 2).y, catenary_sag(span, length), 0.01);

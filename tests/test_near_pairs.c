@@ -57,8 +57,9 @@ static skein_world *world_with(const char *method, int substeps, double thicknes
 
 static void add_sheet(skein_world *world, double height, double tilt, const char *pins) {
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins), SKEIN_REAL("bend.stiffness", 0),
-                                            SKEIN_VEC3("position", 0, height, 0), SKEIN_VEC3("rotation", 90 - tilt, 10, 0)),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins),
+                                            SKEIN_REAL("bend.stiffness", 0), SKEIN_VEC3("position", 0, height, 0),
+                                            SKEIN_VEC3("rotation", 90 - tilt, 10, 0)),
                              NULL));
 }
 
@@ -81,7 +82,8 @@ static void of_a_heap_that_is_held(void **state) {
         skein_world *world = world_with("xpbd", 2, 0.03);
         add_sheet(world, 0.53, tilt, "");
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "top edge"), SKEIN_VEC3("position", 3, 3, 0)),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "top edge"),
+                                                SKEIN_VEC3("position", 3, 3, 0)),
                                  NULL));
         OK(world, skein_force_add(world, "gravity", SKEIN_SETTINGS(SKEIN_VEC3("acceleration", 30, 0, 12)), NULL));
         tally all = run_by(world, 4 * STEPS, 1.0 / 200);
@@ -112,11 +114,12 @@ static void of_two_that_meet_fast(void **state) {
     (void)state;
     skein_world *world = world_with("symplectic_euler", 40, 0.02);
     for (int l = 0; l < 2; l++)
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_VEC3("position", 0, 0.4 + 0.2 * l, 0),
-                                                SKEIN_VEC3("rotation", 5 * l, 20 * l, 0), SKEIN_VEC3("velocity", l, -6 * l, 0),
-                                                SKEIN_REAL("stretch.stiffness", 500)),
-                                 NULL));
+        OK(world,
+           skein_body_add(world, "cloth", NULL,
+                          SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_VEC3("position", 0, 0.4 + 0.2 * l, 0),
+                                         SKEIN_VEC3("rotation", 5 * l, 20 * l, 0), SKEIN_VEC3("velocity", l, -6 * l, 0),
+                                         SKEIN_REAL("stretch.stiffness", 500)),
+                          NULL));
     tally all = run(world, STEPS / 2);
     assert_true(SANITIZED || all.near > 100);
 }
@@ -139,8 +142,11 @@ static void of_what_is_moved_by_hand(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(of_a_heap), cmocka_unit_test(of_a_heap_that_is_held), cmocka_unit_test(of_a_sheet_that_swings),
-                                       cmocka_unit_test(of_an_irregular_mesh), cmocka_unit_test(of_two_that_meet_fast),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(of_a_heap),
+                                       cmocka_unit_test(of_a_heap_that_is_held),
+                                       cmocka_unit_test(of_a_sheet_that_swings),
+                                       cmocka_unit_test(of_an_irregular_mesh),
+                                       cmocka_unit_test(of_two_that_meet_fast),
                                        cmocka_unit_test(of_what_is_moved_by_hand)};
     int failed = cmocka_run_group_tests(tests, NULL, NULL);
     without_panels = true;

@@ -89,10 +89,9 @@ static void run_kernels(sk_run *run, const sk_op *ops, size_t count) {
 /* The account of a solve from v as it is. */
 static sk_solve solve(problem *o) {
     static sk_op_kernel *const kernels[SK_NEWTON_PARTS] = {
-        [SK_NEWTON_GUESS] = guess,         [SK_NEWTON_ALONG] = along,
-        [SK_NEWTON_HOLD] = NULL,           [SK_NEWTON_RESIDUAL] = residual,
-        [SK_NEWTON_LINEARISE] = linearise, [SK_NEWTON_PRECONDITION] = precondition,
-        [SK_NEWTON_MULTIPLY] = multiply,   [SK_NEWTON_STEP] = step,
+        [SK_NEWTON_GUESS] = guess,       [SK_NEWTON_ALONG] = along,         [SK_NEWTON_HOLD] = NULL,
+        [SK_NEWTON_RESIDUAL] = residual, [SK_NEWTON_LINEARISE] = linearise, [SK_NEWTON_PRECONDITION] = precondition,
+        [SK_NEWTON_MULTIPLY] = multiply, [SK_NEWTON_STEP] = step,
     };
     sk_op ops[ROWS] = {{.kind = SK_OP_SOLVE, .kernel = sk_newton_solve, .rule = &o->params}};
     size_t count = 1;

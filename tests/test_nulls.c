@@ -6,8 +6,8 @@
 #include <skein/compiled.h>
 #include <skein/cut.h>
 #include <skein/formula.h>
-#include <skein/kinds.h>
 #include <skein/gradient.h>
+#include <skein/kinds.h>
 #include <skein/record.h>
 #include <skein/share.h>
 
@@ -489,8 +489,9 @@ static void every_function_was_called(void **state) {
         "skein_number",       "skein_vector",  "skein_handle_equal",  "skein_default_pacer", "skein_settings_of",
         "skein_world_create", // whose pointers may both be NULL
     };
-    static const char *const headers[] = {"include/skein/skein.h", "include/skein/record.h", "include/skein/formula.h",
-                                          "include/skein/kinds.h", "include/skein/gradient.h", "include/skein/cut.h"};
+    static const char *const headers[] = {"include/skein/skein.h",    "include/skein/record.h",
+                                          "include/skein/formula.h",  "include/skein/kinds.h",
+                                          "include/skein/gradient.h", "include/skein/cut.h"};
     char *own = read_text("tests/test_nulls.c");
     blank_comments(own);
     size_t found = 0, missing = 0;

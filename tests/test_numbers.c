@@ -23,12 +23,36 @@ static void as_strtod(const char *text) {
 /* In the locale C, where strtod() tells. */
 static void numbers_are_the_nearest(void **state) {
     (void)state;
-    static const char *const texts[] = {"0", "-0", "1", "+1.5", ".5", "5.", "1e3", "1e", "1e+", "2e-3x", "1.2.3", "", "-", ".",
-                                        "x", " \t7,8", "1e400", "1e-400", "4.9e-324", "2.2250738585072011e-308",
-                                        "9007199254740993", "9007199254740992.9999999999999999999999",
-                                        "0.000000000000000000000000000000000000000000001e45", "123456789012345678901234567890",
-                                        "1e999999999999", "1e-999999999999", "0e999999999999", "1.00000000000000011102230246251565",
-                                        "1.7976931348623157e308", "179769313486231580793e289"};
+    static const char *const texts[] = {"0",
+                                        "-0",
+                                        "1",
+                                        "+1.5",
+                                        ".5",
+                                        "5.",
+                                        "1e3",
+                                        "1e",
+                                        "1e+",
+                                        "2e-3x",
+                                        "1.2.3",
+                                        "",
+                                        "-",
+                                        ".",
+                                        "x",
+                                        " \t7,8",
+                                        "1e400",
+                                        "1e-400",
+                                        "4.9e-324",
+                                        "2.2250738585072011e-308",
+                                        "9007199254740993",
+                                        "9007199254740992.9999999999999999999999",
+                                        "0.000000000000000000000000000000000000000000001e45",
+                                        "123456789012345678901234567890",
+                                        "1e999999999999",
+                                        "1e-999999999999",
+                                        "0e999999999999",
+                                        "1.00000000000000011102230246251565",
+                                        "1.7976931348623157e308",
+                                        "179769313486231580793e289"};
     for (size_t i = 0; i < COUNT(texts); i++) as_strtod(texts[i]);
     uint64_t seed = 5;
     for (int i = 0; i < 100000; i++) {
@@ -37,7 +61,8 @@ static void numbers_are_the_nearest(void **state) {
         double x;
         memcpy(&x, &bits, sizeof x);
         if (!isfinite(x)) continue;
-        snprintf(text, sizeof text, "%.*g", 1 + (int)(dice(&seed) % 20), i & 1 ? x : (double)(int64_t)(bits >> 20) / 1e6);
+        snprintf(text, sizeof text, "%.*g", 1 + (int)(dice(&seed) % 20),
+                 i & 1 ? x : (double)(int64_t)(bits >> 20) / 1e6);
         as_strtod(text);
     }
     char many[1200]; // a tie, and what decides it in the last place
@@ -75,10 +100,12 @@ static void a_comma_for_a_point_changes_nothing(void **state) {
     for (int turn = 0; turn < 2; turn++) {
         if (turn) there = write_commas();
         skein_world *world = new_world("xpbd", 4);
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_TEXT("pins", "box -0.6 -1.5 -1.5 -0.4 1.5 1.5")),
-                                 NULL));
-        OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 0.5 0.25 0 0.125")), NULL));
+        OK(world,
+           skein_body_add(
+               world, "cloth", NULL,
+               SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_TEXT("pins", "box -0.6 -1.5 -1.5 -0.4 1.5 1.5")), NULL));
+        OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("keys", "0 0 0 0, 0.5 0.25 0 0.125")),
+                                   NULL));
         OK(world, skein_force_add(world, "potential", SKEIN_SETTINGS(SKEIN_TEXT("energy", "0.5*p.y")), NULL));
         steps(world, 20, 1.0 / 60);
         hash[turn] = skein_world_hash(world);

@@ -23,16 +23,17 @@ static two make_two(const char *method, bool cloths, int threads) {
         skein_surface surface;
         const char *name = b == NAMED ? "named" : "other", *groups = b == NAMED ? "chosen, few" : "few or none";
         if (cloths)
-            OK(t.world, skein_body_add(t.world, "cloth", NULL,
-                                       SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_TEXT("name", name), SKEIN_TEXT("groups", groups),
-                                                      SKEIN_REAL("stretch.stiffness", 100),
-                                                      SKEIN_REAL("shear.stiffness", 50),
-                                                      SKEIN_VEC3("position", 0, 0.3 * b, 0)),
-                                       &body));
+            OK(t.world,
+               skein_body_add(t.world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_TEXT("name", name),
+                                             SKEIN_TEXT("groups", groups), SKEIN_REAL("stretch.stiffness", 100),
+                                             SKEIN_REAL("shear.stiffness", 50), SKEIN_VEC3("position", 0, 0.3 * b, 0)),
+                              &body));
         else
             OK(t.world, skein_body_add(t.world, "flock", NULL,
-                                       SKEIN_SETTINGS(SKEIN_REAL("count", LOOSE_PARTICLES), SKEIN_TEXT("name", name), SKEIN_TEXT("groups", groups),
-                                                      SKEIN_VEC3("spread", 1, 1, 1), SKEIN_REAL("speed", 0.7)),
+                                       SKEIN_SETTINGS(SKEIN_REAL("count", LOOSE_PARTICLES), SKEIN_TEXT("name", name),
+                                                      SKEIN_TEXT("groups", groups), SKEIN_VEC3("spread", 1, 1, 1),
+                                                      SKEIN_REAL("speed", 0.7)),
                                        &body));
         OK(t.world, skein_body_surface(t.world, body, &surface));
         t.first[b] = surface.first_particle, t.count[b] = surface.particle_count;
@@ -73,8 +74,9 @@ static const skein_setting *settings_of(const char *kind) {
 }
 
 /* For colliders that are made from one: a cube about the origin. */
-static const double block_points[8][3] = {{-0.35, -0.35, -0.35}, {0.35, -0.35, -0.35}, {-0.35, 0.35, -0.35}, {0.35, 0.35, -0.35},
-                                          {-0.35, -0.35, 0.35},  {0.35, -0.35, 0.35},  {-0.35, 0.35, 0.35},  {0.35, 0.35, 0.35}};
+static const double block_points[8][3] = {{-0.35, -0.35, -0.35}, {0.35, -0.35, -0.35}, {-0.35, 0.35, -0.35},
+                                          {0.35, 0.35, -0.35},   {-0.35, -0.35, 0.35}, {0.35, -0.35, 0.35},
+                                          {-0.35, 0.35, 0.35},   {0.35, 0.35, 0.35}};
 static const uint32_t block_sizes[6] = {4, 4, 4, 4, 4, 4},
                       block_corners[24] = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5};
 static const skein_mesh block = {&block_points[0][0], 8, block_sizes, 6, block_corners, 24};
@@ -83,9 +85,12 @@ static void add_rule(skein_world *world, const skein_kind *kind, const char *on)
     skein_handle rule;
     // for the lookout to see
     if (!strcmp(kind->name, "lookout"))
-        OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.01), SKEIN_VEC3("centre", 0, -2, 0)), NULL));
+        OK(world, skein_collider_add(world, "sphere",
+                                     SKEIN_SETTINGS(SKEIN_REAL("radius", 0.01), SKEIN_VEC3("centre", 0, -2, 0)), NULL));
     if (kind->category == SKEIN_FORCE) OK(world, skein_force_add(world, kind->name, settings_of(kind->name), &rule));
-    else OK(world, skein_collider_add_mesh(world, kind->name, skein_field_find(kind, "mesh", NULL) ? &block : NULL, settings_of(kind->name), &rule));
+    else
+        OK(world, skein_collider_add_mesh(world, kind->name, skein_field_find(kind, "mesh", NULL) ? &block : NULL,
+                                          settings_of(kind->name), &rule));
     OK(world, skein_set(world, rule, "on", skein_text(on)));
 }
 
@@ -110,7 +115,9 @@ static void try_rule(const char *method, const skein_kind *kind, bool cloths, co
     two with = make_two(method, cloths, 1 + cloths), without = make_two(method, cloths, 1);
     // somebody to be seen, but far from all
     if (!strcmp(kind->name, "lookout"))
-        OK(without.world, skein_collider_add(without.world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.01), SKEIN_VEC3("centre", 0, -2, 0)), NULL));
+        OK(without.world,
+           skein_collider_add(without.world, "sphere",
+                              SKEIN_SETTINGS(SKEIN_REAL("radius", 0.01), SKEIN_VEC3("centre", 0, -2, 0)), NULL));
     add_rule(with.world, kind, on);
     steps(with.world, STEPS, 1.0 / 60), steps(without.world, STEPS, 1.0 / 60);
     double moved, off;
@@ -118,8 +125,8 @@ static void try_rule(const char *method, const skein_kind *kind, bool cloths, co
     // one solve has one number of iterations for all: there others are the same to its tolerance
     bool same = strcmp(method, "backward_euler") ? other == 0 : off < 1e-3;
     if (!named || !same)
-        fail_msg("%s, %s on %s, '%s': %zu numbers of the body named differ, %zu of the other (by %g)", method, kind->name,
-                 cloths ? "cloths" : "flocks", on, named, other, off);
+        fail_msg("%s, %s on %s, '%s': %zu numbers of the body named differ, %zu of the other (by %g)", method,
+                 kind->name, cloths ? "cloths" : "flocks", on, named, other, off);
     skein_world_destroy(with.world), skein_world_destroy(without.world);
 }
 
@@ -132,7 +139,7 @@ static void each_rule_moves_whom_it_names(void **state) {
             for (size_t k = 0; skein_kind_at(SKEIN_FORCE, k); k++) {
                 const skein_kind *kind = skein_kind_at(SKEIN_FORCE, k);
                 if (!strcmp(kind->name, "surface_wind") && !cloths) continue; // it has nothing to act on
-                if (!strcmp(kind->name, "contact")) continue; // nothing touches here: test_touching.c
+                if (!strcmp(kind->name, "contact")) continue;                 // nothing touches here: test_touching.c
                 try_rule(all_methods[m], kind, cloths, on);
             }
             for (size_t k = 0; skein_kind_at(SKEIN_COLLIDER, k); k++)
@@ -146,10 +153,14 @@ static void who_rests_is_let_be(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++) {
         skein_world *world = new_world(all_methods[m], 3);
         for (int b = 0; b < 2; b++)
-            OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_REAL("stretch.stiffness", 100), SKEIN_REAL("shear.stiffness", 50),
-                                     SKEIN_TEXT("name", b ? "b" : "a")), NULL));
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_REAL("stretch.stiffness", 100),
+                                             SKEIN_REAL("shear.stiffness", 50), SKEIN_TEXT("name", b ? "b" : "a")),
+                              NULL));
         OK(world, skein_force_add(world, "gravity", SKEIN_SETTINGS(SKEIN_TEXT("on", "a")), NULL));
-        OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 2, 3), SKEIN_TEXT("on", "a")), NULL));
+        OK(world, skein_force_add(world, "surface_wind",
+                                  SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 2, 3), SKEIN_TEXT("on", "a")), NULL));
         OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_TEXT("on", "a")), NULL));
         vec3 x = position_of(world, 30);
         steps(world, 5, 0.01);
@@ -165,12 +176,18 @@ static void each_follows_its_own_law(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++) {
         skein_world *world = new_world(all_methods[m], 4);
         for (int b = 0; b < 3; b++)
-            OK(world, skein_body_add(world, "flock", NULL,
-                                     SKEIN_SETTINGS(SKEIN_REAL("count", 5), SKEIN_REAL("speed", 0), SKEIN_REAL("mass", 0.5),
-                                                    SKEIN_TEXT("name", b == 0 ? "falls" : b == 1 ? "is blown" : "does both")), NULL));
+            OK(world,
+               skein_body_add(world, "flock", NULL,
+                              SKEIN_SETTINGS(SKEIN_REAL("count", 5), SKEIN_REAL("speed", 0), SKEIN_REAL("mass", 0.5),
+                                             SKEIN_TEXT("name", b == 0   ? "falls"
+                                                                : b == 1 ? "is blown"
+                                                                         : "does both")),
+                              NULL));
         skein_handle gravity;
         OK(world, skein_force_add(world, "gravity", SKEIN_SETTINGS(SKEIN_TEXT("on", "falls, does both")), &gravity));
-        OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1, 0, 0), SKEIN_TEXT("on", " does both ,is blown")), NULL));
+        OK(world, skein_force_add(
+                      world, "wind",
+                      SKEIN_SETTINGS(SKEIN_VEC3("force", 1, 0, 0), SKEIN_TEXT("on", " does both ,is blown")), NULL));
         steps(world, 30, 0.01);
         double gain[2] = {-9.81 * 0.3, 1 / 0.5 * 0.3};
         for (int b = 0; b < 3; b++)
@@ -197,10 +214,12 @@ static void contacts_are_of_those_named(void **state) {
     two t = make_two("xpbd", false, 1);
     skein_contact contact[2 * LOOSE_PARTICLES];
     size_t count;
-    OK(t.world, skein_collider_add(t.world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", 5), SKEIN_TEXT("on", "other")), NULL));
+    OK(t.world,
+       skein_collider_add(t.world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", 5), SKEIN_TEXT("on", "other")), NULL));
     OK(t.world, skein_contacts_copy(t.world, contact, COUNT(contact), &count));
     assert_int_equal(count, LOOSE_PARTICLES);
-    for (size_t i = 0; i < count; i++) assert_in_range(contact[i].particle, t.first[OTHER], t.first[OTHER] + LOOSE_PARTICLES - 1);
+    for (size_t i = 0; i < count; i++)
+        assert_in_range(contact[i].particle, t.first[OTHER], t.first[OTHER] + LOOSE_PARTICLES - 1);
     assert_int_equal(statistics_of(t.world).contacts, LOOSE_PARTICLES);
     skein_world_destroy(t.world);
 }
@@ -216,10 +235,12 @@ static void unknown_names_are_told(void **state) {
     OK(t.world, skein_collider_add(t.world, "plane", SKEIN_SETTINGS(SKEIN_TEXT("on", "nmed")), &plane));
     FAILS(t.world, SKEIN_ERROR_NAME, "did you mean 'named'?", skein_world_step(t.world, 0.01));
     OK(t.world, skein_set(t.world, plane, "on", skein_text("named, chossen")));
-    FAILS(t.world, SKEIN_ERROR_NAME, "there is no body or group of the name 'chossen'; did you mean 'chosen'?", skein_world_step(t.world, 0.01));
+    FAILS(t.world, SKEIN_ERROR_NAME, "there is no body or group of the name 'chossen'; did you mean 'chosen'?",
+          skein_world_step(t.world, 0.01));
     OK(t.world, skein_remove(t.world, plane));
     // a rule that steers moves bodies that lie beside each other, or says so
-    OK(t.world, skein_body_add(t.world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 3), SKEIN_TEXT("name", "third")), NULL));
+    OK(t.world, skein_body_add(t.world, "flock", NULL,
+                               SKEIN_SETTINGS(SKEIN_REAL("count", 3), SKEIN_TEXT("name", "third")), NULL));
     skein_handle limit;
     OK(t.world, skein_force_add(t.world, "speed_limit", SKEIN_SETTINGS(SKEIN_TEXT("on", "named, other")), &limit));
     OK(t.world, skein_world_step(t.world, 0.01));
@@ -253,12 +274,9 @@ static void cards_know_whom(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_rule_moves_whom_it_names),
-        cmocka_unit_test(who_rests_is_let_be),
-        cmocka_unit_test(each_follows_its_own_law),
-        cmocka_unit_test(contacts_are_of_those_named),
-        cmocka_unit_test(unknown_names_are_told),
-        cmocka_unit_test(cards_know_whom),
+        cmocka_unit_test(each_rule_moves_whom_it_names), cmocka_unit_test(who_rests_is_let_be),
+        cmocka_unit_test(each_follows_its_own_law),      cmocka_unit_test(contacts_are_of_those_named),
+        cmocka_unit_test(unknown_names_are_told),        cmocka_unit_test(cards_know_whom),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -124,7 +124,8 @@ static void nothing_else_moves(void **state) {
     OK(world, skein_set_path(world, "method.inertia", skein_number(0)));
     add_gravity(world);
     OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 1, 0, 0)), NULL));
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.25), SKEIN_REAL("recovery", 1e6)), NULL));
+    OK(world, skein_collider_add(world, "plane",
+                                 SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.25), SKEIN_REAL("recovery", 1e6)), NULL));
     add_moving(world, 1, 0, 1, 0, 1, 2, 3);
     add_moving(world, 1, 5, 0.125, 0, 1, -2, 3);
     for (int n = 0; n < 3; n++) {

@@ -71,7 +71,8 @@ static void assert_full_groups(skein_world *world, size_t batches) {
 
 static void groups_of_meshes_are_full(void **state) {
     (void)state;
-    static const char *const pins[] = {"", "0 39", "box -1 -1 -1 2 1 0.01"}, *const bendings[] = {"angle", "curvature", "springs"};
+    static const char *const pins[] = {"", "0 39", "box -1 -1 -1 2 1 0.01"}, *const bendings[] = {"angle", "curvature",
+                                                                                                  "springs"};
     for (size_t p = 0; p < COUNT(pins); p++)
         for (size_t b = 0; b < COUNT(bendings); b++)
             for (int renumbered = 0; renumbered < 2; renumbered++) {
@@ -132,7 +133,8 @@ static void a_broad_mesh_walks_without_pins(void **state) {
     square *s = make_square(BROAD_SIDE, true);
     assert_full_groups(world, 4);
     for (size_t b = 0; b < world->rules.batches.count; b++)
-        for (size_t i = 0; i < world->rules.batches.data[b]->sweep_count && !world->rules.batches.data[b]->only_bounds; i++)
+        for (size_t i = 0; i < world->rules.batches.data[b]->sweep_count && !world->rules.batches.data[b]->only_bounds;
+             i++)
             assert_non_null(world->rules.batches.data[b]->sweeps[i].slab_start);
     double *x = malloc(3 * s->mesh.vertex_count * sizeof *x);
     OK(world, skein_positions_copy(world, 0, s->mesh.vertex_count, x));

@@ -92,7 +92,8 @@ static const skein_collider_type egg = {
     .formula = "length(p) - size",
 };
 
-static const skein_field lift_fields[] = {SKEIN_FIELD_OF_REAL(swirl_params, pull, "speed", "m/s", 1, -10, 10, "upwards")};
+static const skein_field lift_fields[] = {
+    SKEIN_FIELD_OF_REAL(swirl_params, pull, "speed", "m/s", 1, -10, 10, "upwards")};
 static void lift_move(const void *data, double time, double place[3]) {
     place[1] += ((const swirl_params *)data)->pull * time;
 }
@@ -129,7 +130,8 @@ static skein_status chain_build_well(skein_builder *builder, const void *data, c
     return status == SKEIN_ERROR_VALUE && !mesh ? skein_build_triangles(builder, 0, NULL) : status;
 }
 static const skein_body_type bad_chain = {
-    .kind = {"bad_chain", "a fault in its triangles", SKEIN_BODY, chain_fields, COUNT(chain_fields), sizeof(chain_params)},
+    .kind = {"bad_chain", "a fault in its triangles", SKEIN_BODY, chain_fields, COUNT(chain_fields),
+             sizeof(chain_params)},
     .build = chain_build,
 };
 static const skein_body_type chain = {
@@ -167,8 +169,8 @@ static const skein_method_type own_euler = {
 static skein_kinds *kinds;
 
 static int set_up(void **state) {
-    static const skein_kind *const all[] = {&swirl.kind, &swirl_c.kind, &well.kind,  &rod.kind,       &ball.kind,     &egg.kind,
-                                            &lift.kind,  &chain.kind,   &bad_chain.kind, &own_euler.kind};
+    static const skein_kind *const all[] = {&swirl.kind, &swirl_c.kind, &well.kind,  &rod.kind,       &ball.kind,
+                                            &egg.kind,   &lift.kind,    &chain.kind, &bad_chain.kind, &own_euler.kind};
     skein_error error = {SKEIN_OK, "", ""};
     (void)state;
     kinds = skein_kinds_create(&error);
@@ -226,8 +228,8 @@ static void a_force_by_formula_moves_under_every_method(void **state) {
                                         SKEIN_SETTINGS(SKEIN_TEXT("force", swirl_text), SKEIN_REAL("parameters.k", 5),
                                                        SKEIN_REAL("parameters.c", 0.1))));
         assert_int_not_equal(own, run_force(all_methods[m], "swirl", NULL));
-        assert_int_not_equal(own, run_force(all_methods[m], "swirl",
-                                            SKEIN_SETTINGS(SKEIN_REAL("pull", 5), SKEIN_REAL("rub", 2))));
+        assert_int_not_equal(
+            own, run_force(all_methods[m], "swirl", SKEIN_SETTINGS(SKEIN_REAL("pull", 5), SKEIN_REAL("rub", 2))));
     }
 }
 
@@ -274,8 +276,8 @@ static void a_constraint_finds_its_length(void **state) {
         add_particle(world, 0, 0, 0, 0);
         add_particle(world, 1, 0.5, 0, 0);
         OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 10)), NULL));
-        OK(world, skein_constraint_add(world, "rod", (const uint32_t[]){0, 1}, 1, SKEIN_SETTINGS(SKEIN_REAL("longer", 2)),
-                                       &handle));
+        OK(world, skein_constraint_add(world, "rod", (const uint32_t[]){0, 1}, 1,
+                                       SKEIN_SETTINGS(SKEIN_REAL("longer", 2)), &handle));
         for (int i = 0; i < 240; i++) OK(world, skein_world_step(world, dt));
         assert_near(position_of(world, 1).x, 1, 2e-3);
         OK(world, skein_set(world, handle, "longer", skein_number(3)));
@@ -405,7 +407,8 @@ static void they_are_listed_and_checked(void **state) {
     skein_handle handle;
     skein_value value;
     FAILS(another, SKEIN_ERROR_NAME, "no force 'swirl'", skein_force_add(another, "swirl", NULL, NULL));
-    FAILS(world, SKEIN_ERROR_VALUE, "pull", skein_force_add(world, "swirl", SKEIN_SETTINGS(SKEIN_REAL("pull", -1)), NULL));
+    FAILS(world, SKEIN_ERROR_VALUE, "pull",
+          skein_force_add(world, "swirl", SKEIN_SETTINGS(SKEIN_REAL("pull", -1)), NULL));
     FAILS(world, SKEIN_ERROR_NAME, "did you mean 'pull'",
           skein_force_add(world, "swirl", SKEIN_SETTINGS(SKEIN_REAL("pul", 1)), NULL));
     OK(world, skein_force_add(world, "swirl", NULL, &handle));
@@ -416,13 +419,13 @@ static void they_are_listed_and_checked(void **state) {
     skein_world_destroy(world), skein_world_destroy(another);
 }
 
-#define REFUSED(status_, part_, ...)                                                                       \
-    do {                                                                                                   \
-        const skein_force_type type_ = __VA_ARGS__;                                                        \
-        skein_error error_ = {SKEIN_OK, "", ""};                                                           \
-        assert_int_equal(skein_kind_register(kinds, &type_.kind, &error_), (status_));                     \
-        if (!strstr(error_.message, (part_)) && !strstr(error_.where, (part_)))                            \
-            fail_msg("'%s': '%s', expected '%s'", error_.where, error_.message, (part_));                  \
+#define REFUSED(status_, part_, ...)                                                      \
+    do {                                                                                  \
+        const skein_force_type type_ = __VA_ARGS__;                                       \
+        skein_error error_ = {SKEIN_OK, "", ""};                                          \
+        assert_int_equal(skein_kind_register(kinds, &type_.kind, &error_), (status_));    \
+        if (!strstr(error_.message, (part_)) && !strstr(error_.where, (part_)))           \
+            fail_msg("'%s': '%s', expected '%s'", error_.where, error_.message, (part_)); \
     } while (0)
 
 static void what_is_wrong_is_said_when_it_is_registered(void **state) {

@@ -60,7 +60,8 @@ static void check(const char *path, bool is_mesh) {
     size_t size;
     char *bytes = contents(path, &size);
     if (is_mesh) assert_true(js_file_add(js, path, bytes, size));
-    if (!js_open(js, is_mesh ? NULL : bytes, is_mesh ? 0 : size, path, NULL, 2)) fail_msg("%s: %s", path, js_faults(js));
+    if (!js_open(js, is_mesh ? NULL : bytes, is_mesh ? 0 : size, path, NULL, 2))
+        fail_msg("%s: %s", path, js_faults(js));
     if (!is_mesh) js_give(bytes);
     assert_true(js_step(js, FRAMES));
     assert_true(js_hash(js) == of_the_command(path));

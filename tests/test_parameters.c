@@ -121,8 +121,7 @@ static void expect_refused(const skein_setting *settings, const char *where, con
 
 static void bad_names_are_refused(void **state) {
     (void)state;
-    expect_refused(SKEIN_SETTINGS(SKEIN_REAL("parameters.2x", 1)), "parameters.2x",
-                   "'2x' cannot be a parameter's name");
+    expect_refused(SKEIN_SETTINGS(SKEIN_REAL("parameters.2x", 1)), "parameters.2x", "'2x' cannot be a parameter's name");
     expect_refused(SKEIN_SETTINGS(SKEIN_REAL("parameters.a.b", 1)), "parameters.a.b", "'a.b' cannot be");
     expect_refused(SKEIN_SETTINGS(SKEIN_REAL("parameters.*", 1)), "parameters.*", "'*' cannot be");
     expect_refused(SKEIN_SETTINGS(SKEIN_REAL("parameters.", 1)), "parameters.", "'' cannot be");

@@ -43,21 +43,12 @@ static skein_world *hanging_sheet(const char *method, int substeps, sheet_kind k
             sizes[faces++] = 3, sizes[faces++] = 3;
         }
     skein_mesh mesh = {xyz, VERTICES, sizes, faces, corners, 3 * faces};
-    const skein_setting of_grid[] = {SKEIN_PAIR("grid", ROWS, COLUMNS),
-                                     SKEIN_PAIR("size", 0.5, 0.4),
-                                     SKEIN_VEC3("rotation", 90, 0, 0),
-                                     SKEIN_VEC3("position", 0, 0.2, 0),
-                                     SKEIN_TEXT("pins", "top edge"),
-                                     SKEIN_REAL("stretch.stiffness", 60),
-                                     SKEIN_REAL("shear.stiffness", 30),
-                                     SKEIN_REAL("stretch.damping", 0.05),
-                                     SKEIN_REAL("shear.damping", 0.03),
-                                     SKEIN_TEXT("bend.by", "springs"),
-                                     SKEIN_REAL("bend.stiffness", 4),
-                                     SKEIN_REAL("bend.damping", 0.01),
-                                     SKEIN_REAL("stretch.tether", 0.01),
-                                     SKEIN_REAL("stretch.limit", 0.05),
-                                     {0}},
+    const skein_setting of_grid[] =
+        {SKEIN_PAIR("grid", ROWS, COLUMNS),  SKEIN_PAIR("size", 0.5, 0.4),        SKEIN_VEC3("rotation", 90, 0, 0),
+         SKEIN_VEC3("position", 0, 0.2, 0),  SKEIN_TEXT("pins", "top edge"),      SKEIN_REAL("stretch.stiffness", 60),
+         SKEIN_REAL("shear.stiffness", 30),  SKEIN_REAL("stretch.damping", 0.05), SKEIN_REAL("shear.damping", 0.03),
+         SKEIN_TEXT("bend.by", "springs"),   SKEIN_REAL("bend.stiffness", 4),     SKEIN_REAL("bend.damping", 0.01),
+         SKEIN_REAL("stretch.tether", 0.01), SKEIN_REAL("stretch.limit", 0.05),   {0}},
                         of_mesh[] = {SKEIN_TEXT("pins", pins),
                                      SKEIN_REAL("stretch.stiffness", 60),
                                      SKEIN_REAL("stretch.damping", 0.05),
@@ -85,8 +76,7 @@ static size_t list_pins(const skein_world *world, uint32_t *pins, double *places
     return found;
 }
 
-static void move_pins(skein_world *world, size_t count, const uint32_t *pins, const double *places, double x,
-                      double z) {
+static void move_pins(skein_world *world, size_t count, const uint32_t *pins, const double *places, double x, double z) {
     double at[3 * COLUMNS];
     for (size_t i = 0; i < count; i++) {
         at[3 * i] = places[3 * i] + x, at[3 * i + 1] = places[3 * i + 1], at[3 * i + 2] = places[3 * i + 2] + z;

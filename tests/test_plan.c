@@ -14,9 +14,9 @@ static skein_world *busy_world(const char *method) {
                                             SKEIN_VEC3("position", 0, 0.6, 0), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("density", 0.5), SKEIN_REAL("stretch.stiffness", 20),
                                             SKEIN_REAL("stretch.damping", 0.05), SKEIN_REAL("shear.stiffness", 10),
-                                            SKEIN_REAL("shear.damping", 0.02), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 5),
-                                            SKEIN_REAL("bend.damping", 0.01), SKEIN_REAL("stretch.limit", 0.02),
-                                            SKEIN_REAL("stretch.tether", 0)),
+                                            SKEIN_REAL("shear.damping", 0.02), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 5), SKEIN_REAL("bend.damping", 0.01),
+                                            SKEIN_REAL("stretch.limit", 0.02), SKEIN_REAL("stretch.tether", 0)),
                              NULL));
     uint64_t seed = 11;
     for (int i = 0; i < 20; i++)
@@ -132,8 +132,7 @@ static void explain_prints_a_line_a_row(void **state) {
         }
         // the repeat says how often and how much, and what it repeats is indented
         assert_int_equal(lines_with(&p, "3 times"), 1);
-        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 &&
-                    lines_with(&p, "limit") >= 1);
+        assert_true(lines_with(&p, "gravity") == 1 && lines_with(&p, "separation") == 1 && lines_with(&p, "limit") >= 1);
         assert_true(lines_with(&p, "ball") == lines_with(&p, "ground") && lines_with(&p, "ball") >= 1);
         assert_int_equal(lines_with(&p, "    "), p.count);
         size_t repeat = 0;
@@ -169,8 +168,11 @@ static void needless_rows_are_left_out(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
     skein_handle body;
-    OK(world,
-       skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"), SKEIN_REAL("stretch.limit", 0.05), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 20)), &body));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"),
+                                            SKEIN_REAL("stretch.limit", 0.05), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 20)),
+                             &body));
     page p = {.count = 0};
     OK(world, skein_world_explain(world, dt, write_line, &p));
     assert_true(lines_with(&p, "multiplier") == 0 && lines_with(&p, "grid") == 0 && lines_with(&p, "V0") == 0);

@@ -18,16 +18,15 @@ static skein_status add_body(everything *e, int which) {
     static const char *const kinds[] = {"cloth", "lattice", "flock", "rope"};
     skein_surface surface;
     const skein_setting *settings =
-        which == CLOTH ? SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 18), SKEIN_TEXT("pins", "top corners"),
-                                        SKEIN_REAL("stretch.stiffness", 300), SKEIN_REAL("shear.stiffness", 100),
-                                        SKEIN_TEXT("name", "cloth"))
-        : which == LATTICE
-            ? SKEIN_SETTINGS(SKEIN_TEXT("name", "lattice"), SKEIN_REAL("structural.stiffness", 200),
-                             SKEIN_REAL("shear.stiffness", 100), SKEIN_REAL("bending.stiffness", 0))
-        : which == BIRDS ? SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 37),
-                                          SKEIN_VEC3("spread", 3, 3, 3), SKEIN_REAL("speed", 1))
-                         : SKEIN_SETTINGS(SKEIN_TEXT("name", "rope"), SKEIN_REAL("stretch.stiffness", 300),
-                                          SKEIN_REAL("bend.stiffness", 0));
+        which == CLOTH     ? SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 18), SKEIN_TEXT("pins", "top corners"),
+                                            SKEIN_REAL("stretch.stiffness", 300), SKEIN_REAL("shear.stiffness", 100),
+                                            SKEIN_TEXT("name", "cloth"))
+        : which == LATTICE ? SKEIN_SETTINGS(SKEIN_TEXT("name", "lattice"), SKEIN_REAL("structural.stiffness", 200),
+                                            SKEIN_REAL("shear.stiffness", 100), SKEIN_REAL("bending.stiffness", 0))
+        : which == BIRDS   ? SKEIN_SETTINGS(SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 37),
+                                            SKEIN_VEC3("spread", 3, 3, 3), SKEIN_REAL("speed", 1))
+                           : SKEIN_SETTINGS(SKEIN_TEXT("name", "rope"), SKEIN_REAL("stretch.stiffness", 300),
+                                            SKEIN_REAL("bend.stiffness", 0));
     skein_status status = skein_body_add(e->world, kinds[which], NULL, settings, &e->bodies[which]);
     if (status) return status;
     OK(e->world, skein_body_surface(e->world, e->bodies[which], &surface));
@@ -47,10 +46,12 @@ static everything make_everything(const char *method, int threads, int without) 
     add_gravity(e.world);
     OK(e.world, skein_force_add(e.world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
     OK(e.world, skein_force_add(e.world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 1, 0, 2)), NULL));
-    OK(e.world, skein_force_add(e.world, "separation", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.08), SKEIN_REAL("strength", 0.01)), NULL));
+    OK(e.world, skein_force_add(e.world, "separation",
+                                SKEIN_SETTINGS(SKEIN_REAL("radius", 0.08), SKEIN_REAL("strength", 0.01)), NULL));
     if (without != BIRDS)
         OK(e.world, skein_force_add(e.world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), NULL));
-    OK(e.world, skein_collider_add(e.world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.3), SKEIN_REAL("friction", 0.3)), NULL));
+    OK(e.world, skein_collider_add(e.world, "plane",
+                                   SKEIN_SETTINGS(SKEIN_REAL("offset", -0.3), SKEIN_REAL("friction", 0.3)), NULL));
     return e;
 }
 
@@ -144,7 +145,8 @@ static void constraints_lose_what_is_gone(void **state) {
         skein_handle birds, ties;
         size_t count;
         uint32_t a = add_particle(world, 0, 0, 0, 0), b = add_particle(world, 1, 1, 0, 0);
-        OK(world, skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 2), SKEIN_REAL("speed", 0)), &birds));
+        OK(world, skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 2), SKEIN_REAL("speed", 0)),
+                                 &birds));
         const uint32_t pairs[] = {a, b, b, 2, 2, 3};
         OK(world, skein_constraint_add(world, "distance", pairs, 3, SKEIN_SETTINGS(SKEIN_REAL("stiffness", 10)), &ties));
         place_particle(world, b, 1.5, 0, 0);
@@ -179,7 +181,8 @@ static void a_pressure_rests(void **state) {
     static const uint32_t closed[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3};
     skein_world *world = new_world("symplectic_euler", 4);
     skein_handle birds, pressure;
-    OK(world, skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 4), SKEIN_REAL("speed", 0)), &birds));
+    OK(world,
+       skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 4), SKEIN_REAL("speed", 0)), &birds));
     OK(world, skein_constraint_add(world, "pressure", closed, 4, SKEIN_SETTINGS(SKEIN_REAL("pressure", 3)), &pressure));
     OK(world, skein_set(world, birds, "enabled", skein_number(0)));
     steps(world, 3, 1e-3);
@@ -188,7 +191,8 @@ static void a_pressure_rests(void **state) {
     steps(world, 1, 1e-3);
     assert_int_equal(statistics_of(world).constraints, 1);
     OK(world, skein_remove(world, birds));
-    OK(world, skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 4), SKEIN_REAL("speed", 0)), &birds));
+    OK(world,
+       skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 4), SKEIN_REAL("speed", 0)), &birds));
     steps(world, 3, 1e-3);
     assert_true(length3(velocity_of(world, 0)) == 0);
     skein_world_destroy(world);
@@ -227,7 +231,8 @@ static void indices_of_others_stay(void **state) {
     skein_surface surface;
     OK(e.world, skein_body_surface(e.world, again.bodies[LATTICE], &surface));
     for (size_t v = 0; v < surface.vertex_count; v++)
-        assert_in_range(surface.particle_of_vertex[v], again.first[LATTICE], again.first[LATTICE] + again.count[LATTICE] - 1);
+        assert_in_range(surface.particle_of_vertex[v], again.first[LATTICE],
+                        again.first[LATTICE] + again.count[LATTICE] - 1);
     steps(e.world, 3, step_length);
     skein_world_destroy(e.world), skein_world_destroy(fresh.world);
 }
@@ -263,7 +268,9 @@ static void memory_does_not_grow(void **state) {
         skein_handle *place = &live[(size_t)random_between(&seed, 0, COUNT(live))], *rule = &rules[i % 2];
         if (skein_handle_valid(e.world, *place)) OK(e.world, skein_remove(e.world, *place));
         if (skein_handle_valid(e.world, *rule)) OK(e.world, skein_remove(e.world, *rule));
-        skein_setting rows[] = {SKEIN_PAIR("grid", (double)(int)random_between(&seed, 2, 8), (double)(int)random_between(&seed, 2, 8)), {NULL, {0, {0, 0, 0}, NULL}}};
+        skein_setting rows[] = {
+            SKEIN_PAIR("grid", (double)(int)random_between(&seed, 2, 8), (double)(int)random_between(&seed, 2, 8)),
+            {NULL, {0, {0, 0, 0}, NULL}}};
         OK(e.world, skein_body_add(e.world, "cloth", NULL, rows, place));
         OK(e.world, skein_force_add(e.world, "wind", NULL, rule));
         if (i % 20 == 0) OK(e.world, skein_world_step(e.world, step_length));
@@ -295,7 +302,8 @@ static void nobody_meets_what_is_not_there(void **state) {
     uint32_t particle;
     double t;
     OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5)), &cloth));
-    OK(world, skein_body_add(world, "flock", NULL, SKEIN_SETTINGS(SKEIN_REAL("count", 9), SKEIN_VEC3("position", 50, 50, 50)), &birds));
+    OK(world, skein_body_add(world, "flock", NULL,
+                             SKEIN_SETTINGS(SKEIN_REAL("count", 9), SKEIN_VEC3("position", 50, 50, 50)), &birds));
     vec3 x = position_of(world, 12);
     const double at[3] = {x.x, x.y, x.z};
     const double above[3] = {x.x + 0.01, x.y + 5, x.z + 0.01}, front[3] = {x.x + 0.01, x.y + 0.01, x.z + 5};
@@ -329,7 +337,8 @@ static void rules_wait_for_the_next_of_a_name(void **state) {
     const skein_setting named[] = {SKEIN_TEXT("name", "birds"), SKEIN_REAL("count", 9), {NULL, {0, {0, 0, 0}, NULL}}};
     OK(world, skein_body_add(world, "flock", NULL, named, &birds));
     OK(world, skein_force_add(world, "attraction", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds")), &rule));
-    OK(world, skein_force_add(world, "flocking", SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("neighbours", "birds")), NULL));
+    OK(world, skein_force_add(world, "flocking",
+                              SKEIN_SETTINGS(SKEIN_TEXT("on", "birds"), SKEIN_TEXT("neighbours", "birds")), NULL));
     OK(world, skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_REAL("particle", 3)), NULL));
     steps(world, 2, 0.01);
     OK(world, skein_remove(world, birds));
@@ -352,10 +361,10 @@ static void motions_wait_for_the_next_of_a_name(void **state) {
     const uint32_t first_two[] = {0, 1};
     const double places[] = {5, 0, 0, 6, 0, 0};
     const skein_track track = {first_two, places, 2, 1, 1};
-    const skein_setting named[] = {SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"),
-                                   {NULL, {0, {0, 0, 0}, NULL}}};
-    const skein_setting other[] = {SKEIN_TEXT("name", "other"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"),
-                                   {NULL, {0, {0, 0, 0}, NULL}}};
+    const skein_setting named[] = {
+        SKEIN_TEXT("name", "flag"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"), {NULL, {0, {0, 0, 0}, NULL}}};
+    const skein_setting other[] = {
+        SKEIN_TEXT("name", "other"), SKEIN_PAIR("grid", 3, 3), SKEIN_TEXT("pins", "0"), {NULL, {0, {0, 0, 0}, NULL}}};
     OK(world, skein_body_add(world, "cloth", NULL, named, &flag));
     OK(world, skein_motion_add(world, "translate", NULL,
                                SKEIN_SETTINGS(SKEIN_TEXT("on", "flag"), SKEIN_VEC3("velocity", 1, 0, 0)), &motion));

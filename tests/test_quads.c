@@ -60,7 +60,8 @@ static skein_world *hang(const quads *q) {
     skein_world *world = skein_world_create(NULL, NULL);
     OK(world, skein_force_add(world, "gravity", NULL, NULL));
     OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0, 0, 1e-3)), NULL));
-    OK(world, skein_body_add(world, "cloth", &q->mesh, SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_TEXT("pins", pins)), NULL));
+    OK(world, skein_body_add(world, "cloth", &q->mesh,
+                             SKEIN_SETTINGS(SKEIN_TEXT("bend.by", "springs"), SKEIN_TEXT("pins", pins)), NULL));
     return world;
 }
 

@@ -173,8 +173,7 @@ static void finds_the_nearest_particles(void **state) {
     FAILS(world, SKEIN_ERROR_VALUE, "no particles",
           skein_particle_near_point(world, (const double[]){0, 0, 0}, &particle, &distance));
     for (int i = 0; i < MANY; i++)
-        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1),
-                     random_between(&seed, -1, 1));
+        add_particle(world, 1, random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1));
     for (int i = 0; i < 50; i++) {
         vec3 p = {random_between(&seed, -1, 1), random_between(&seed, -1, 1), random_between(&seed, -1, 1)};
         const double point[3] = {p.x, p.y, p.z};
@@ -266,7 +265,8 @@ static void a_world_goes_back_to_a_copy(void **state) {
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_TEXT("pins", "top corners"),
                                                 SKEIN_REAL("density", 1), SKEIN_REAL("stretch.stiffness", 50),
-                                                SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
+                                                SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"),
+                                                SKEIN_REAL("bend.stiffness", 1)),
                                  NULL));
         add_gravity(world);
         OK(world, skein_collider_add(world, "sphere", // it moves: where it is depends on the clock
@@ -306,7 +306,8 @@ static void measures_the_passes_of_a_step(void **state) {
                skein_body_add(worlds[w], "cloth", NULL,
                               SKEIN_SETTINGS(SKEIN_PAIR("grid", 20, 20), SKEIN_TEXT("pins", "top corners"),
                                              SKEIN_REAL("density", 2), SKEIN_REAL("stretch.stiffness", 50),
-                                             SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 1)),
+                                             SKEIN_REAL("shear.stiffness", 10), SKEIN_TEXT("bend.by", "springs"),
+                                             SKEIN_REAL("bend.stiffness", 1)),
                               NULL));
             add_gravity(worlds[w]);
             OK(worlds[w], skein_collider_add(worlds[w], "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.1)), NULL));

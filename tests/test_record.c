@@ -42,7 +42,9 @@ static skein_world *make_world(void) {
                                             SKEIN_TEXT("pins", "top edge")),
                              NULL));
     OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3)), NULL));
-    OK(world, skein_collider_add_mesh(world, "mesh", &(skein_mesh){corner[0], 3, &(uint32_t){3}, 1, (const uint32_t[]){0, 1, 2}, 3}, NULL, NULL));
+    OK(world, skein_collider_add_mesh(world, "mesh",
+                                      &(skein_mesh){corner[0], 3, &(uint32_t){3}, 1, (const uint32_t[]){0, 1, 2}, 3},
+                                      NULL, NULL));
     add_gravity(world);
     return world;
 }

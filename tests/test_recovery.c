@@ -14,7 +14,11 @@ static const shape shapes[] = {
     {"plane", {SKEIN_VEC3("normal", 0, 1, 0), SKEIN_REAL("offset", 0.5), SKEIN_END}, {0.3, 0.2, 0}, {0, 1, 0}, 0.3},
     {"sphere", {SKEIN_VEC3("centre", 0, 1, 0), SKEIN_REAL("radius", 0.5), SKEIN_END}, {0, 1, 0.2}, {0, 0, 1}, 0.3},
     {"box", {SKEIN_VEC3("size", 2, 0.6, 2), SKEIN_END}, {0.1, 0.1, 0.1}, {0, 1, 0}, 0.2},
-    {"capsule", {SKEIN_VEC3("from", -1, 0, 0), SKEIN_VEC3("to", 1, 0, 0), SKEIN_REAL("radius", 0.4), SKEIN_END}, {0.2, 0, -0.1}, {0, 0, -1}, 0.3},
+    {"capsule",
+     {SKEIN_VEC3("from", -1, 0, 0), SKEIN_VEC3("to", 1, 0, 0), SKEIN_REAL("radius", 0.4), SKEIN_END},
+     {0.2, 0, -0.1},
+     {0, 0, -1},
+     0.3},
     {"bowl", {SKEIN_REAL("radius", 1), SKEIN_END}, {-1.3, 0, 0}, {1, 0, 0}, 0.3},
     {"formula", {SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_END}, {0, 0.25, 0}, {0, 1, 0}, 0.25},
     {"mesh", {SKEIN_REAL("scale", 2), SKEIN_END}, {0.7, 0.1, 0.2}, {1, 0, 0}, 0.3},
@@ -27,11 +31,13 @@ static skein_handle add_shape(skein_world *world, const shape *s) {
     // a cube of 1 m
     static const double corners[8][3] = {{-.5, -.5, -.5}, {.5, -.5, -.5}, {-.5, .5, -.5}, {.5, .5, -.5},
                                          {-.5, -.5, .5},  {.5, -.5, .5},  {-.5, .5, .5},  {.5, .5, .5}};
-    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+    static const uint32_t quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                         {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
     static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4};
     const skein_mesh mesh = {&corners[0][0], 8, sizes, 6, &quads[0][0], 24};
     skein_handle handle;
-    if (!strcmp(s->kind, "mesh") || !strcmp(s->kind, "field")) OK(world, skein_collider_add_mesh(world, s->kind, &mesh, s->settings, &handle));
+    if (!strcmp(s->kind, "mesh") || !strcmp(s->kind, "field"))
+        OK(world, skein_collider_add_mesh(world, s->kind, &mesh, s->settings, &handle));
     else OK(world, skein_collider_add(world, s->kind, s->settings, &handle));
     return handle;
 }
@@ -65,11 +71,15 @@ static void it_comes_out_at_its_speed(void **state) {
                             if (inside) assert_near(at[k], ought, 2e-5);
                             if (inside) assert_near(has[k], drift, 1e-3);
                         }
-                        double gap = (p.x - it->start[0] - drift * t) * it->out[0] + (p.y - it->start[1] - drift * t) * it->out[1] +
+                        double gap = (p.x - it->start[0] - drift * t) * it->out[0] +
+                                     (p.y - it->start[1] - drift * t) * it->out[1] +
                                      (p.z - it->start[2] - drift * t) * it->out[2];
-                        if (!(gap <= out + v / 400 + 1e-4)) print_error("%s, %s, %g m/s%s: out by %g of %g in frame %d\n", all_methods[i], it->kind, v, moving ? ", moving" : "", gap, v * t, f);
+                        if (!(gap <= out + v / 400 + 1e-4))
+                            print_error("%s, %s, %g m/s%s: out by %g of %g in frame %d\n", all_methods[i], it->kind, v,
+                                        moving ? ", moving" : "", gap, v * t, f);
                         assert_true(gap <= out + v / 400 + 1e-4);
-                        if (!inside && v > 0 && v * t > it->depth + thickness + v / 100) assert_true(gap >= it->depth + thickness - 2e-5);
+                        if (!inside && v > 0 && v * t > it->depth + thickness + v / 100)
+                            assert_true(gap >= it->depth + thickness - 2e-5);
                     }
                     assert_true(speed <= 0.1 * v + 1e-3);
                     skein_world_destroy(world);
@@ -106,10 +116,13 @@ static void a_cloth_is_not_thrown(void **state) {
             if (i > 1 && (SANITIZED || n != i - 2)) continue;
             skein_world *world = new_world(methods[i], substeps[n]);
             add_gravity(world);
-            OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.4), SKEIN_REAL("thickness", 0.005)), NULL));
+            OK(world,
+               skein_collider_add(world, "sphere",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", 0.4), SKEIN_REAL("thickness", 0.005)), NULL));
             OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 25, 25), SKEIN_VEC3("position", 0, 0.2, 0), SKEIN_REAL("density", 0.2),
-                                                    SKEIN_REAL("stretch.stiffness", 100), SKEIN_REAL("shear.stiffness", 10)),
+                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 25, 25), SKEIN_VEC3("position", 0, 0.2, 0),
+                                                    SKEIN_REAL("density", 0.2), SKEIN_REAL("stretch.stiffness", 100),
+                                                    SKEIN_REAL("shear.stiffness", 10)),
                                      NULL));
             double start = 0, mass = 0.2;
             for (int f = 0; f < 60; f++) {
@@ -117,7 +130,8 @@ static void a_cloth_is_not_thrown(void **state) {
                 double energy = s.kinetic_energy + s.potential_energy;
                 if (!f) start = energy;
                 // it is lifted by 0.2 m where it is deepest, and may have 1 m/s
-                if (!(energy < start + 0.5 * mass + mass * 9.81 * 0.2)) print_error("%s, %d: %g J in frame %d, began with %g\n", methods[i], substeps[n], energy, f, start);
+                if (!(energy < start + 0.5 * mass + mass * 9.81 * 0.2))
+                    print_error("%s, %d: %g J in frame %d, began with %g\n", methods[i], substeps[n], energy, f, start);
                 assert_true(energy < start + 0.5 * mass + mass * 9.81 * 0.2);
                 assert_true(s.kinetic_energy < 0.5 * mass + mass * 9.81 * 0.2);
                 steps(world, 1, 1.0 / 60);
@@ -131,7 +145,8 @@ static void a_cloth_is_not_thrown(void **state) {
 static void a_pin_let_go_inside_comes_out(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 10);
-    OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.5), SKEIN_REAL("recovery", 0.25)), NULL));
+    OK(world, skein_collider_add(world, "sphere",
+                                 SKEIN_SETTINGS(SKEIN_REAL("radius", 0.5), SKEIN_REAL("recovery", 0.25)), NULL));
     add_particle(world, 0.1, 0, 0.3, 0);
     OK(world, skein_particle_pin(world, 0, true));
     steps(world, 10, 1.0 / 60);

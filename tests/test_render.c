@@ -42,8 +42,7 @@ static void a_square_covers_what_it_must(void **state) {
 
     // its own colour in the middle, the sky at the rim
     render_image image = shoot(&frame, &camera);
-    const uint8_t *middle = render_image_pixel(&image, width / 2, height / 2),
-                  *rim = render_image_pixel(&image, 5, 5);
+    const uint8_t *middle = render_image_pixel(&image, width / 2, height / 2), *rim = render_image_pixel(&image, 5, 5);
     assert_true(middle[0] > middle[1] + 60 && middle[0] > middle[2] + 60);
     assert_true(rim[2] > rim[0] && rim[2] > 120);
     render_image_release(&image);
@@ -167,11 +166,9 @@ static void there_is_ground_and_a_horizon(void **state) {
     assert_int_equal(above, 0);
     assert_true(below > 150);
     // the sky is bluer than the ground, and they meet without an edge
-    const uint8_t *sky = render_image_pixel(&with, 20, 2),
-                  *floor = render_image_pixel(&with, 20, height - 10);
+    const uint8_t *sky = render_image_pixel(&with, 20, 2), *floor = render_image_pixel(&with, 20, height - 10);
     assert_true(sky[2] - sky[0] > floor[2] - floor[0] + 10);
-    for (int y = 1; y < height / 2; y++)
-        assert_true(abs(brightness(&with, 20, y) - brightness(&with, 20, y - 1)) < 24);
+    for (int y = 1; y < height / 2; y++) assert_true(abs(brightness(&with, 20, y) - brightness(&with, 20, y - 1)) < 24);
     render_image_release(&with);
     render_image_release(&without);
 }
@@ -298,8 +295,7 @@ static void the_same_frame_gives_the_same_picture(void **state) {
     frame.planes = &ground, frame.plane_count = 1;
 
     // with another frame between, and by a new renderer
-    render_image first = shoot(&frame, &camera), between = shoot(&other, &camera),
-                 again = shoot(&frame, &camera);
+    render_image first = shoot(&frame, &camera), between = shoot(&other, &camera), again = shoot(&frame, &camera);
     render_draw *fresh = render_draw_create(NULL);
     assert_non_null(fresh);
     render_image anew = shoot_with(fresh, &frame, &camera);
@@ -369,8 +365,7 @@ static void flat_normals_are_exact(void **state) {
     static const uint32_t triangles[6] = {0, 2, 1, 1, 2, 3};
     (void)state;
     float normals[12];
-    render_surface surface = {
-        .positions = positions, .vertex_count = 4, .triangles = triangles, .triangle_count = 2};
+    render_surface surface = {.positions = positions, .vertex_count = 4, .triangles = triangles, .triangle_count = 2};
     render_surface_normals(&surface, normals);
     for (int v = 0; v < 4; v++) {
         assert_true(normals[3 * v] == 0 && normals[3 * v + 1] == 1 && normals[3 * v + 2] == 0);
@@ -383,8 +378,7 @@ static void welded_vertices_share_a_normal(void **state) {
     static const uint32_t triangles[6] = {0, 2, 1, 3, 5, 4}, weld[6] = {0, 1, 2, 1, 4, 2};
     (void)state;
     float apart[18], joined[18];
-    render_surface surface = {
-        .positions = positions, .vertex_count = 6, .triangles = triangles, .triangle_count = 2};
+    render_surface surface = {.positions = positions, .vertex_count = 6, .triangles = triangles, .triangle_count = 2};
     render_surface_normals(&surface, apart);
     surface.weld = weld;
     render_surface_normals(&surface, joined);
@@ -394,10 +388,8 @@ static void welded_vertices_share_a_normal(void **state) {
 }
 
 static void the_camera_holds_the_whole_box(void **state) {
-    static const render_bounds boxes[4] = {{{-1, 0, -1}, {1, 2, 1}},
-                                           {{-50, 0, -1}, {50, 0.1, 1}},
-                                           {{0, 0, 0}, {0.001, 30, 0.001}},
-                                           {{7, 7, 7}, {7, 7, 7}}};
+    static const render_bounds boxes[4] = {
+        {{-1, 0, -1}, {1, 2, 1}}, {{-50, 0, -1}, {50, 0.1, 1}}, {{0, 0, 0}, {0.001, 30, 0.001}}, {{7, 7, 7}, {7, 7, 7}}};
     static const double aspects[3] = {16.0 / 9, 1, 0.5};
     (void)state;
     for (int b = 0; b < 4; b++) {
@@ -484,8 +476,9 @@ static void file_errors_say_what_and_where(void **state) {
 /* What a file of a few bytes says about its size is not taken for memory. */
 static void a_picture_is_measured_before_it_is_unpacked(void **state) {
     (void)state;
-    static const uint8_t huge[] = {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0,    0, 13, 'I', 'H', 'D', 'R', 0,
-                                   0,    46,  224, 0,   0,    46,   224,  8,    2, 0, 0, 0,  0,   0,   0,   0}; // 12,000^2
+    static const uint8_t huge[] = {
+        0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0,
+        0,    46,  224, 0,   0,    46,   224,  8,    2, 0, 0, 0,  0,   0,   0,   0}; // 12,000^2
     char path[256];
     render_image image = {0};
     skein_error error = {0};
@@ -535,17 +528,16 @@ static skein_world *cloth_on_a_ball(void) {
     skein_error error = {0};
     skein_world *world = skein_world_create(NULL, &error);
     assert_non_null(world);
-    assert_int_equal(
-        skein_body_add(world, "cloth", NULL,
-                       SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 17), SKEIN_PAIR("size", 2, 1),
-                                      SKEIN_VEC3("position", 0, 1.6, 0), SKEIN_VEC3("rotation", 50, 0, 0),
-                                      SKEIN_TEXT("pins", "corners")),
-                       NULL),
-        SKEIN_OK);
-    assert_int_equal(
-        skein_collider_add(world, "sphere",
-                           SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_REAL("radius", 0.5)), NULL),
-        SKEIN_OK);
+    assert_int_equal(skein_body_add(world, "cloth", NULL,
+                                    SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 17), SKEIN_PAIR("size", 2, 1),
+                                                   SKEIN_VEC3("position", 0, 1.6, 0), SKEIN_VEC3("rotation", 50, 0, 0),
+                                                   SKEIN_TEXT("pins", "corners")),
+                                    NULL),
+                     SKEIN_OK);
+    assert_int_equal(skein_collider_add(world, "sphere",
+                                        SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0), SKEIN_REAL("radius", 0.5)),
+                                        NULL),
+                     SKEIN_OK);
     assert_int_equal(skein_collider_add(world, "plane", NULL, NULL), SKEIN_OK);
     return world;
 }
@@ -561,8 +553,7 @@ static void a_world_becomes_a_frame(void **state) {
     assert_int_equal(frame->surfaces[0].vertex_count, 9 * 17);
     assert_int_equal(frame->surfaces[0].triangle_count, 2 * 8 * 16);
     assert_non_null(frame->surfaces[0].uv);
-    assert_true(frame->surfaces[0].uv[2 * (9 * 17 - 1)] == 1 &&
-                frame->surfaces[0].uv[2 * (9 * 17 - 1) + 1] == 1);
+    assert_true(frame->surfaces[0].uv[2 * (9 * 17 - 1)] == 1 && frame->surfaces[0].uv[2 * (9 * 17 - 1) + 1] == 1);
     assert_int_equal(frame->sphere_count, 1);
     assert_true(frame->spheres[0].centre[1] == 0.5 && frame->spheres[0].radius == 0.5);
     assert_int_equal(frame->plane_count, 1);
@@ -570,10 +561,8 @@ static void a_world_becomes_a_frame(void **state) {
     assert_int_equal(frame->points[1].count, 4); // pins
 
     // what is hidden is not there; without a plane there is a floor of no effect
-    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_BODY, 0), "visible", skein_number(0)),
-                     SKEIN_OK);
-    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_COLLIDER, 1), "visible", skein_number(0)),
-                     SKEIN_OK);
+    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_BODY, 0), "visible", skein_number(0)), SKEIN_OK);
+    assert_int_equal(skein_set(world, skein_object_at(world, SKEIN_COLLIDER, 1), "visible", skein_number(0)), SKEIN_OK);
     assert_int_equal(render_world_frame_update(made, world, NULL, &error), SKEIN_OK);
     assert_int_equal(frame->surface_count, 0);
     assert_int_equal(frame->points[0].count + frame->points[1].count, 0);

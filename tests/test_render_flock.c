@@ -34,9 +34,9 @@ static void a_chosen_birds_neighbours_are_those_of_the_rule(void **state) {
     skein_world *world = rows(6, somewhere, onwards);
     skein_handle flocking;
     size_t rings;
-    OK(skein_force_add(world, "flocking",
-                       SKEIN_SETTINGS(SKEIN_REAL("separation", 3), SKEIN_REAL("alignment", 2), SKEIN_REAL("cohesion", 2)),
-                       &flocking));
+    OK(skein_force_add(
+        world, "flocking",
+        SKEIN_SETTINGS(SKEIN_REAL("separation", 3), SKEIN_REAL("alignment", 2), SKEIN_REAL("cohesion", 2)), &flocking));
     render_world_frame *made = render_world_frame_create(NULL);
     OK(render_world_frame_update(made, world, NULL, NULL));
     assert_int_equal(render_world_frame_get(made)->lines[RENDER_ZONES].count, 0); // nobody is chosen
@@ -72,9 +72,9 @@ static void zones_by_the_square_are_shares_of_it(void **state) {
     skein_world *world = rows(6, somewhere, onwards);
     skein_handle flocking;
     double radii[3];
-    OK(skein_force_add(world, "flocking",
-                       SKEIN_SETTINGS(SKEIN_REAL("separation", 3), SKEIN_REAL("alignment", 6), SKEIN_REAL("cohesion", 3)),
-                       &flocking));
+    OK(skein_force_add(
+        world, "flocking",
+        SKEIN_SETTINGS(SKEIN_REAL("separation", 3), SKEIN_REAL("alignment", 6), SKEIN_REAL("cohesion", 3)), &flocking));
     assert_true(render_flock_zones(world, flocking, radii));
     assert_true(radii[0] == 3 && radii[1] == 9 && radii[2] == 12);
     OK(skein_set(world, flocking, "measure", skein_number(1)));
@@ -92,8 +92,8 @@ static void a_predator_is_seen_where_it_is(void **state) {
     (void)state;
     skein_world *world = rows(6, somewhere, onwards);
     skein_handle hawk;
-    OK(skein_force_add(world, "predator",
-                       SKEIN_SETTINGS(SKEIN_VEC3("position", 3, 20, 5), SKEIN_REAL("radius", 4)), &hawk));
+    OK(skein_force_add(world, "predator", SKEIN_SETTINGS(SKEIN_VEC3("position", 3, 20, 5), SKEIN_REAL("radius", 4)),
+                       &hawk));
     render_world_frame *made = render_world_frame_create(NULL);
     for (int what = 0; what < 4; what++) {
         // in a place; along a line straight down, which passes the flock's middle level; a bird itself; resting

@@ -11,7 +11,9 @@ static viewer_sight sight_from(double x, double y, double z) {
 }
 
 static viewer_gizmo gizmo_at(viewer_tool tool, double x, double y, double z) {
-    viewer_gizmo gizmo = {tool, {x, y, z}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {true, true, true, true, true, true, true}, GIZMO_NOTHING, 1};
+    viewer_gizmo gizmo = {
+        tool,          {x, y, z}, {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {true, true, true, true, true, true, true},
+        GIZMO_NOTHING, 1};
     if (tool != VIEWER_MOVES) gizmo.has[3] = gizmo.has[4] = gizmo.has[5] = false;
     if (tool == VIEWER_TURNS) gizmo.has[GIZMO_ALL] = false;
     return gizmo;
@@ -128,7 +130,8 @@ static void sizes_follow_the_pointer(void **state) {
         assert_true(viewer_sight_project(&sight, p, from) && viewer_sight_project(&sight, q, to));
         assert_true(viewer_gizmo_follow(&gizmo, &sight, part, from, to, by));
         for (int k = 0; k < 3; k++) assert_near(by[k], k == part ? 2 : 1, 1e-9);
-        assert_true(viewer_gizmo_follow(&gizmo, &sight, part, from, (double[2]){2 * from[0] - to[0] * 1, from[1] * 2 - to[1]}, by));
+        assert_true(viewer_gizmo_follow(&gizmo, &sight, part, from,
+                                        (double[2]){2 * from[0] - to[0] * 1, from[1] * 2 - to[1]}, by));
         assert_true(by[part] > 0); // never inside out
     }
 }
@@ -136,18 +139,21 @@ static void sizes_follow_the_pointer(void **state) {
 /* ---- every kind ------------------------------------------------------------------------------------ */
 
 /* A world with one object of a kind: of a mesh where it needs one, and away from where it is by default. */
-static skein_world *world_with(skein_category category, const skein_kind *kind, const viewer_spot_change *changes, size_t count) {
+static skein_world *world_with(skein_category category, const skein_kind *kind, const viewer_spot_change *changes,
+                               size_t count) {
     static const double mesh_places[] = {0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1};
     static const uint32_t corners[] = {0, 1, 2, 3}, sizes[] = {4};
     static const uint32_t faces[] = {0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3}, threes[] = {3, 3, 3, 3};
-    const skein_mesh solid = {mesh_places, 4, sizes, 1, corners, 4}, closed = {mesh_places, 4, threes, 4, faces, 12}, *mesh = NULL;
+    const skein_mesh solid = {mesh_places, 4, sizes, 1, corners, 4}, closed = {mesh_places, 4, threes, 4, faces, 12},
+                     *mesh = NULL;
     skein_world *world = new_world("xpbd", 1);
     skein_setting settings[16] = {{0}};
     size_t n = 0;
     static const struct {
         const char *name;
         double v[3];
-    } start[] = {{"position", {0.3, 0.2, -0.1}}, {"centre", {0.3, 0.2, -0.1}}, {"rotation", {20, -35, 50}}, {"from", {-0.4, 0.3, 0.2}}, {"to", {0.5, 0.1, -0.3}}, {"normal", {0.2, 0.9, 0.1}}};
+    } start[] = {{"position", {0.3, 0.2, -0.1}}, {"centre", {0.3, 0.2, -0.1}}, {"rotation", {20, -35, 50}},
+                 {"from", {-0.4, 0.3, 0.2}},     {"to", {0.5, 0.1, -0.3}},     {"normal", {0.2, 0.9, 0.1}}};
     for (size_t s = 0; s < COUNT(start); s++)
         if (skein_field_find(kind, start[s].name, NULL))
             settings[n++] = (skein_setting){start[s].name, skein_vector(start[s].v[0], start[s].v[1], start[s].v[2])};
@@ -160,7 +166,8 @@ static skein_world *world_with(skein_category category, const skein_kind *kind, 
     skein_status status = SKEIN_ERROR_VALUE;
     skein_handle handle;
     if (category == SKEIN_BODY) status = skein_body_add(world, kind->name, mesh, settings, &handle);
-    else if (category == SKEIN_COLLIDER && mesh) status = skein_collider_add_mesh(world, kind->name, mesh, settings, &handle);
+    else if (category == SKEIN_COLLIDER && mesh)
+        status = skein_collider_add_mesh(world, kind->name, mesh, settings, &handle);
     else if (category == SKEIN_COLLIDER) status = skein_collider_add(world, kind->name, settings, &handle);
     else status = skein_force_add(world, kind->name, settings, &handle);
     if (status) fail_msg("%s: %s", kind->name, skein_world_error(world)->message);
@@ -173,8 +180,12 @@ static const struct {
     int part; /* where there is none, all of it */
     double by[3];
 } tries[] = {
-    {VIEWER_MOVES, GIZMO_ALL, {0.25, -0.5, 0.75}}, {VIEWER_TURNS, 2, {40, 0, 0}},   {VIEWER_TURNS, 0, {-25, 0, 0}},
-    {VIEWER_SIZES, GIZMO_ALL, {1.5, 1.5, 1.5}},    {VIEWER_SIZES, 0, {1.5, 1, 1}},  {VIEWER_SIZES, 1, {1, 0.5, 1}},
+    {VIEWER_MOVES, GIZMO_ALL, {0.25, -0.5, 0.75}},
+    {VIEWER_TURNS, 2, {40, 0, 0}},
+    {VIEWER_TURNS, 0, {-25, 0, 0}},
+    {VIEWER_SIZES, GIZMO_ALL, {1.5, 1.5, 1.5}},
+    {VIEWER_SIZES, 0, {1.5, 1, 1}},
+    {VIEWER_SIZES, 1, {1, 0.5, 1}},
     {VIEWER_SIZES, 2, {1, 1, 2}},
 };
 
@@ -190,7 +201,8 @@ static void check_kind(skein_category category, const skein_kind *kind, size_t *
         viewer_spot_change changes[2];
         if (!viewer_spot_can(&spot, tries[t].tool)) continue;
         viewer_spot_gizmo(&spot, tries[t].tool, (double[3]){0, 0, 0}, &gizmo);
-        int part = tries[t].part == GIZMO_ALL && !gizmo.has[GIZMO_ALL] ? 1 : tries[t].part; // a plane goes along its normal
+        int part =
+            tries[t].part == GIZMO_ALL && !gizmo.has[GIZMO_ALL] ? 1 : tries[t].part; // a plane goes along its normal
         const double *by = tries[t].by;
         if (!gizmo.has[part]) continue;
         size_t count = viewer_spot_apply(&spot, &gizmo, part, by, 1e-9, changes);

@@ -98,9 +98,9 @@ static render_image picture_of(skein_world *world) {
 
 static render_image picture_with(const char *kind) {
     skein_world *world = make_world();
-    OK(skein_body_add(world, "cloth", NULL,
-                      SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_PAIR("size", 0.2, 0.2), SKEIN_VEC3("position", 1, 1, 0)),
-                      NULL));
+    OK(skein_body_add(
+        world, "cloth", NULL,
+        SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 3), SKEIN_PAIR("size", 0.2, 0.2), SKEIN_VEC3("position", 1, 1, 0)), NULL));
     if (kind) OK(skein_collider_add(world, kind, SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, 0.5, 0)), NULL));
     return picture_of(world);
 }

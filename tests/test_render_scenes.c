@@ -229,7 +229,8 @@ static void check_surroundings(const stage *s) {
     bool horizon = atan2(off[1], hypot(off[0], off[2])) < 0.9 * half; // else it is above the picture
     assert_true(!horizon || sky[2] > sky[0] + 20);
     assert_true(ground[0] > ground[2] + 5 && ground[0] > 130);
-    assert_true(!horizon || brightness(&image, width - 9, height / 7) > brightness(&image, 8, height - 5) + 20); // haze far out
+    assert_true(!horizon ||
+                brightness(&image, width - 9, height / 7) > brightness(&image, 8, height - 5) + 20); // haze far out
     for (int y = 1; y < height / 3; y++)
         assert_true(abs(brightness(&image, width - 9, y) - brightness(&image, width - 9, y - 1)) < 45);
     render_image_release(&image);

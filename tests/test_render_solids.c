@@ -212,7 +212,8 @@ static void an_open_mesh_is_seen_from_both_sides(void **state) {
     skein_handle collider;
     skein_world *world = skein_world_create(NULL, NULL);
     OK(skein_collider_add_mesh(world, "mesh", &sheet,
-                               SKEIN_SETTINGS(SKEIN_VEC3("position", 0.2, 0.8, 0), SKEIN_VEC3("rotation", 10, 20, -5)), &collider));
+                               SKEIN_SETTINGS(SKEIN_VEC3("position", 0.2, 0.8, 0), SKEIN_VEC3("rotation", 10, 20, -5)),
+                               &collider));
     OK(skein_collider_pose(world, collider, &s.pose));
     for (int side = -1; side <= 1; side += 2) {
         view.camera.from[1] = 0.8 + 3 * side;
@@ -315,9 +316,9 @@ static void a_cube_has_edges_and_a_cloth_has_none(void **state) {
     float normals[3 * 100];
     skein_world *world = skein_world_create(NULL, NULL);
     skein_handle block, sheet;
-    OK(skein_body_add(world, "lattice", NULL,
-                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 1, 1, 1), SKEIN_TEXT("look", "plain")),
-                      &block));
+    OK(skein_body_add(
+        world, "lattice", NULL,
+        SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 1, 1, 1), SKEIN_TEXT("look", "plain")), &block));
     OK(skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 7)), &sheet));
     const render_frame *frame = update(world);
     assert_int_equal(frame->surface_count, 2);

@@ -41,8 +41,9 @@ static void open_ones_are_drawn(void **state) {
 static void edges_are_sharp(void **state) {
     (void)state;
     scene s = scene_with("mesh", make_box(1, 1, 1),
-                         SKEIN_SETTINGS(SKEIN_REAL("scale", 2), SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", 0, 90, 0),
-                                        SKEIN_VEC3("motion.velocity", 0.5, 0, 0), SKEIN_REAL("motion.spin", 0.7)));
+                         SKEIN_SETTINGS(SKEIN_REAL("scale", 2), SKEIN_VEC3("position", 0, 1, 0),
+                                        SKEIN_VEC3("rotation", 0, 90, 0), SKEIN_VEC3("motion.velocity", 0.5, 0, 0),
+                                        SKEIN_REAL("motion.spin", 0.7)));
     uint64_t shape = 0;
     for (int step = 0; step < 3; step++) {
         const render_surface *surface = look(&s);
@@ -64,8 +65,11 @@ static void edges_are_sharp(void **state) {
         double volume = 0;
         for (size_t t = 0; t < 12; t++) {
             const uint32_t *c = &surface->triangles[3 * t];
-            const double *a = &surface->positions[3 * c[0]], *b = &surface->positions[3 * c[1]], *d = &surface->positions[3 * c[2]];
-            volume += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) + a[2] * (b[0] * d[1] - b[1] * d[0])) / 6;
+            const double *a = &surface->positions[3 * c[0]], *b = &surface->positions[3 * c[1]],
+                         *d = &surface->positions[3 * c[2]];
+            volume += (a[0] * (b[1] * d[2] - b[2] * d[1]) + a[1] * (b[2] * d[0] - b[0] * d[2]) +
+                       a[2] * (b[0] * d[1] - b[1] * d[0])) /
+                      6;
         }
         assert_near(volume, 8, 1e-4);
         steps(s.world, 1, 0.1);
@@ -103,7 +107,8 @@ static void grounds_are_scenery(void **state) {
     assert_true(surface->scenery);
     assert_int_equal(surface->material.pattern, RENDER_CHECKER);
     for (size_t v = 0; v < 4; v++)
-        for (size_t k = 0; k < 2; k++) assert_near((double)surface->uv[2 * v + k], surface->positions[3 * v + 2 * k], 1e-4);
+        for (size_t k = 0; k < 2; k++)
+            assert_near((double)surface->uv[2 * v + k], surface->positions[3 * v + 2 * k], 1e-4);
     render_bounds bounds = render_frame_bounds(render_world_frame_get(s.frame));
     assert_true(bounds.least[1] > 2);
     end(&s);
@@ -117,7 +122,8 @@ static void fields_are_drawn_as_contact_sees_them(void **state) {
     double at[3];
     OK(s.world, skein_collider_triangles(s.world, s.collider, &triangles));
     assert_int_equal(triangles.count, 0);
-    FAILS(s.world, SKEIN_ERROR_VALUE, "a field has no triangles", skein_collider_vertices_copy(s.world, s.collider, skein_doubles(at, 0)));
+    FAILS(s.world, SKEIN_ERROR_VALUE, "a field has no triangles",
+          skein_collider_vertices_copy(s.world, s.collider, skein_doubles(at, 0)));
     const render_surface *surface = look(&s);
     assert_true(surface && surface->triangle_count > 1000);
     end(&s);

@@ -792,7 +792,8 @@ static void what_is_cut_is_gone(void **state) {
     // where the band was the sky is, as it is beside the cloth
     for (int column = -2; column <= 2; column++)
         for (int row = -3; row <= 3; row++) {
-            const uint8_t *p = pixel_at(&cut, 0.1 * column, 1.2 + 0.13 * row), *q = pixel_at(&whole, 0.1 * column, 1.2 + 0.13 * row);
+            const uint8_t *p = pixel_at(&cut, 0.1 * column, 1.2 + 0.13 * row),
+                          *q = pixel_at(&whole, 0.1 * column, 1.2 + 0.13 * row);
             const uint8_t *sky = pixel_at(&whole, 1.2, 1.2 + 0.13 * row);
             assert_true(abs(p[0] - q[0]) + abs(p[1] - q[1]) + abs(p[2] - q[2]) > 60);
             for (int k = 0; k < 3; k++) assert_true(abs(p[k] - sky[k]) <= 6);

@@ -304,8 +304,8 @@ static void sets_take_numbers_as_they_are_listed(void **state) {
         skein_world_destroy(build_scene(scene, sets));
     }
     // what is no number stays a text, and so does a unit of something else
-    static const char *const bad[] = {"bodies.0.size=2 0.5 kg", "bodies.0.size=2", "bodies.0.size=2 3 4",
-                                      "bodies.0.size=(2 3", "bodies.0.density=1 2", "forces.0.acceleration=1 2"};
+    static const char *const bad[] = {"bodies.0.size=2 0.5 kg", "bodies.0.size=2",      "bodies.0.size=2 3 4",
+                                      "bodies.0.size=(2 3",     "bodies.0.density=1 2", "forces.0.acceleration=1 2"};
     for (size_t i = 0; i < sizeof bad / sizeof *bad; i++) {
         const char *const sets[] = {bad[i], NULL};
         io_faults quiet = {NULL, NULL, 0, NULL};
@@ -360,11 +360,15 @@ static void constraints_tie_bodies_together(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {
 #define TEST(name_) cmocka_unit_test_setup_teardown(name_, make_folder, remove_folder)
-        TEST(the_top_has_defaults_and_values), TEST(every_type_of_field_arrives),
-        TEST(pins_have_short_forms),           TEST(meshes_are_found_beside_the_scene),
-        TEST(sets_change_the_scene),           TEST(constraints_tie_bodies_together),
+        TEST(the_top_has_defaults_and_values),
+        TEST(every_type_of_field_arrives),
+        TEST(pins_have_short_forms),
+        TEST(meshes_are_found_beside_the_scene),
+        TEST(sets_change_the_scene),
+        TEST(constraints_tie_bodies_together),
         TEST(groups_are_texts_or_lists),
-        TEST(a_method_changes_its_type_alone), TEST(sets_take_numbers_as_they_are_listed),
+        TEST(a_method_changes_its_type_alone),
+        TEST(sets_take_numbers_as_they_are_listed),
     };
     return cmocka_run_group_tests_name("scene", tests, NULL, NULL);
 }

@@ -21,8 +21,7 @@ static const struct {
     {"comma_at_the_end", ":1:52: unexpected token near ']'"},
     {"comment", ":1:1: invalid token near '/'"},
     {"constraint_negative", ": constraints.0.particles.1: expected the number of a particle, not the number -1"},
-    {"constraint_of_one_and_three",
-     ": constraints.0.particles.0: expected the numbers of 2 particles, not a list of 1"},
+    {"constraint_of_one_and_three", ": constraints.0.particles.0: expected the numbers of 2 particles, not a list of 1"},
     {"constraint_of_three_particles",
      ": constraints.0.particles: expected the numbers of 2 particles for each constraint, [[0, 1], [1, 2]], say; "
      "not a list of 3"},
@@ -36,15 +35,13 @@ static const struct {
     {"cut_off", ":3:48: '}' expected near end of file"},
     {"cut_off_in_text", ":1:17: premature end of input near '\"a flag'"},
     {"empty", ": the file is empty: expected a scene, { \"bodies\": [...], ... }"},
-    {"field_in_a_group_and_with_a_dot",
-     ": bodies.0.stretch.limit: is there twice, once in a group and once with a dot"},
+    {"field_in_a_group_and_with_a_dot", ": bodies.0.stretch.limit: is there twice, once in a group and once with a dot"},
     {"field_misspelt", ": frame: scene has no field 'frame'; did you mean 'frames'?"},
     {"field_of_body_misspelt", ": bodies.0.densty: cloth has no field 'densty'; did you mean 'density'?"},
     {"field_of_exporter_misspelt", ": output.0.evry: pc2 has no field 'evry'; did you mean 'every'?"},
     {"field_of_group_misspelt",
      ": bodies.0.stretch.stifness: cloth has no field 'stretch.stifness'; did you mean 'stretch.stiffness'?"},
-    {"field_unknown",
-     ": zzzzzzzzzzzzzzzzzzzz: scene has no field 'zzzzzzzzzzzzzzzzzzzz'; `skein list scene` shows all"},
+    {"field_unknown", ": zzzzzzzzzzzzzzzzzzzz: scene has no field 'zzzzzzzzzzzzzzzzzzzz'; `skein list scene` shows all"},
     {"field_with_line_break", ": fra?mes: scene has no field 'fra?mes'; did you mean 'frames'?"},
     {"force_field_number",
      ": forces.0.force: column 1: the result is a number; expected a vector: vec3(x, y, z)\n    length(p)\n    ^^^^^^^^^"},
@@ -97,8 +94,7 @@ static const struct {
     {"kind_of_body_misspelt", ": bodies.0.type: there is no body 'clothe'; did you mean 'cloth'?"},
     {"kind_of_body_unknown", ": bodies.0.type: there is no body 'jelly'"},
     {"kind_of_collider_misspelt", ": colliders.0.type: there is no collider 'spere'; did you mean 'sphere'?"},
-    {"kind_of_constraint_misspelt",
-     ": constraints.0.type: there is no constraint 'distanse'; did you mean 'distance'?"},
+    {"kind_of_constraint_misspelt", ": constraints.0.type: there is no constraint 'distanse'; did you mean 'distance'?"},
     {"kind_of_exporter_misspelt", ": output.1: there is no exporter 'pcc2'; did you mean 'pc2'?"},
     {"kind_of_force_misspelt", ": forces.0.type: there is no force 'gravty'; did you mean 'gravity'?"},
     {"kind_of_method_misspelt", ": method.type: there is no method 'xpdb'; did you mean 'xpbd'?"},
@@ -338,14 +334,16 @@ static void all_faults_are_named_in_one_run(void **state) {
 static void all_unknown_names_are_named_in_one_run(void **state) {
     (void)state;
     char *path = in_folder("names.json"), words[4096];
-    write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge', 'groups': 'clothes, worn' },\n"
-                      "    { 'type': 'flock', 'name': 'a, b', 'count': 2 } ],\n"
-                      "  'forces': [ { 'type': 'gravity', 'on': 'cap, worn, nobody' },\n"
-                      "    { 'type': 'contact', 'ignore': 'cape:shirt, trousers : clothes' },\n"
-                      "    { 'type': 'gravity', 'on': 'worm', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
-                      "    { 'type': 'flocking', 'on': 'a, b', 'neighbours': 'a, cape' } ],\n"
-                      "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'on': 'clotehs' }, { 'type': 'mesh', 'mesh': 'no.obj' } ],\n"
-                      "  'motions': [ { 'type': 'turn', 'on': 'worn, x' }, { 'type': 'turn', 'colliders': 'ball, bat' } ] }");
+    write_scene(
+        path,
+        "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge', 'groups': 'clothes, worn' },\n"
+        "    { 'type': 'flock', 'name': 'a, b', 'count': 2 } ],\n"
+        "  'forces': [ { 'type': 'gravity', 'on': 'cap, worn, nobody' },\n"
+        "    { 'type': 'contact', 'ignore': 'cape:shirt, trousers : clothes' },\n"
+        "    { 'type': 'gravity', 'on': 'worm', 'enabled': false }, { 'type': 'gravity', 'on': 'a, b' },\n"
+        "    { 'type': 'flocking', 'on': 'a, b', 'neighbours': 'a, cape' } ],\n"
+        "  'colliders': [ { 'type': 'sphere', 'name': 'ball', 'on': 'clotehs' }, { 'type': 'mesh', 'mesh': 'no.obj' } ],\n"
+        "  'motions': [ { 'type': 'turn', 'on': 'worn, x' }, { 'type': 'turn', 'colliders': 'ball, bat' } ] }");
     snprintf(words, sizeof words,
              "skein: %s: forces.0.on: there is no body or group of the name 'cap'; did you mean 'cape'?\n"
              "skein: %s: forces.0.on: there is no body or group of the name 'nobody'\n"
@@ -360,15 +358,18 @@ static void all_unknown_names_are_named_in_one_run(void **state) {
              path, path, path, path, path, path, path, path, in_folder("no.obj"), path, path);
     assert_says(2, "", words, "check", path);
     // with all colliders there
-    write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge' } ],\n"
-                      "  'colliders': [ { 'type': 'sphere', 'name': 'ball' } ],\n"
-                      "  'motions': [ { 'type': 'turn', 'colliders': 'ball, bat, cape' }, { 'type': 'attach', 'to': 'bal' } ] }");
-    snprintf(words, sizeof words,
-             "skein: %s: motions.0.colliders: there is no collider of the name 'bat'\n"
-             "skein: %s: motions.0.colliders: there is no collider of the name 'cape': it is that of a body or a group of bodies\n"
-             "skein: %s: motions.1.to: there is no collider of the name 'bal'; did you mean 'ball'?\n"
-             "skein: %s: 3 faults\n",
-             path, path, path, path);
+    write_scene(
+        path,
+        "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3], 'pins': 'top edge' } ],\n"
+        "  'colliders': [ { 'type': 'sphere', 'name': 'ball' } ],\n"
+        "  'motions': [ { 'type': 'turn', 'colliders': 'ball, bat, cape' }, { 'type': 'attach', 'to': 'bal' } ] }");
+    snprintf(
+        words, sizeof words,
+        "skein: %s: motions.0.colliders: there is no collider of the name 'bat'\n"
+        "skein: %s: motions.0.colliders: there is no collider of the name 'cape': it is that of a body or a group of bodies\n"
+        "skein: %s: motions.1.to: there is no collider of the name 'bal'; did you mean 'ball'?\n"
+        "skein: %s: 3 faults\n",
+        path, path, path, path);
     assert_says(2, "", words, "check", path);
     // where a body has a fault, names may be its
     write_scene(path, "{ 'bodies': [ { 'type': 'cloth', 'name': 'cape', 'grid': [3, 3, 3] } ],\n"
@@ -391,7 +392,8 @@ static void slips_in_texts_are_refused(void **state) {
         {"'forces': [ { 'type': 'gravity', 'on': ['a,a'] } ]",
          "forces.0.on.0: expected a name, not the text 'a,a': in a list each name is a text of its own, without commas"},
         {"'colliders': [ { 'type': 'plane', 'on': [2] } ]", "colliders.0.on.0: expected a name, not the number 2"},
-        {"'motions': [ { 'type': 'turn', 'colliders': [''] } ]", "motions.0.colliders.0: expected a name, not the text ''"},
+        {"'motions': [ { 'type': 'turn', 'colliders': [''] } ]",
+         "motions.0.colliders.0: expected a name, not the text ''"},
         {"'motions': [ { 'type': 'turn', 'jump_times': [4, 1.5] } ]",
          "motions.0.jump_times: '4 1.5': 1.5 s comes after 4 s: expected times that rise, such as \"1.5 4\""},
         {"'motions': [ { 'type': 'turn' }, { 'type': 'turn', 'name': 'm', 'map': '1 none.txt' } ]",
@@ -401,7 +403,9 @@ static void slips_in_texts_are_refused(void **state) {
     };
     char *path = in_folder("slip.json"), words[1024];
     for (size_t i = 0; i < COUNT(slips); i++) {
-        snprintf(words, sizeof words, "{ 'bodies': [ { 'type': 'cloth', 'name': 'a', 'grid': [3, 3], 'pins': 'top edge' } ], %s }", slips[i].rules);
+        snprintf(words, sizeof words,
+                 "{ 'bodies': [ { 'type': 'cloth', 'name': 'a', 'grid': [3, 3], 'pins': 'top edge' } ], %s }",
+                 slips[i].rules);
         write_scene(path, words);
         snprintf(words, sizeof words, "skein: %s: %s\n", path, slips[i].words);
         assert_says(2, "", words, "check", path);
@@ -426,7 +430,6 @@ static void what_is_no_file_is_refused(void **state) {
     snprintf(words, sizeof words, "skein: %s: bodies.0.mesh: %s: cannot read: it is a directory, expected a file\n",
              scene, in_folder("mesh.obj"));
     assert_says(2, "", words, "check", scene);
-
 }
 
 static void a_scene_that_may_not_be_read_is_told(void **state) {
@@ -466,8 +469,7 @@ static void faults_of_sets_are_named(void **state) {
         {"metod.substeps=5", "%s: metod: scene has no field 'metod'; did you mean 'method'?"},
         {"bodies.sheet.stretch.stifness=5",
          "%s: bodies.0.stretch.stifness: cloth has no field 'stretch.stifness'; did you mean 'stretch.stiffness'?"},
-        {"bodies.sheet.strech.stiffness=5",
-         "%s: bodies.0.strech: cloth has no field 'strech'; did you mean 'stretch'?"},
+        {"bodies.sheet.strech.stiffness=5", "%s: bodies.0.strech: cloth has no field 'strech'; did you mean 'stretch'?"},
         {"bodies.sheet.density=heavy", "%s: bodies.0.density: expected a number in kg/m2, not the text 'heavy'"},
         {"bodies.sheet.density=1e400", "%s: bodies.0.density: expected a number in kg/m2, not the text '1e400'"},
         {"bodies.sheet.density=", "%s: bodies.0.density: expected a number in kg/m2, not the text ''"},

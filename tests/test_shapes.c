@@ -89,10 +89,10 @@ static answer probe(const skein_world *world, double time, vec3 p) {
             many[2][l] = (skein_real)(p.z - 0.1 * (l - lane));
         }
         sk_probe_sixteen_of[version ? world->isa : 0](collider, &pose, many, SK_REAL_MAX, &contact);
-        answer now = {(double)contact.distance[lane],
-                      {(double)contact.normal[0][lane], (double)contact.normal[1][lane],
-                       (double)contact.normal[2][lane]},
-                      0};
+        answer now = {
+            (double)contact.distance[lane],
+            {(double)contact.normal[0][lane], (double)contact.normal[1][lane], (double)contact.normal[2][lane]},
+            0};
         if (version) assert_memory_equal(&now, &out, sizeof now); // the same bits in any lane and set
         out = now;
     }

@@ -18,19 +18,22 @@ static skein_world *ground(const char *method, int threads) {
     OK(world, skein_method_set(world, method, SKEIN_SETTINGS(SKEIN_REAL("substeps", 5))));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1)), NULL));
-    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("name", "contact")), NULL));
+    OK(world, skein_force_add(world, "contact",
+                              SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("name", "contact")), NULL));
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
     return world;
 }
 
 /* A sheet of a quarter of a metre that falls from y. */
-static skein_handle sheet(skein_world *world, const char *name, const char *pins, double sleep, double x, double y, double turned) {
+static skein_handle sheet(skein_world *world, const char *name, const char *pins, double sleep, double x, double y,
+                          double turned) {
     skein_handle body;
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.25, 0.25),
-                                            SKEIN_TEXT("pins", pins), SKEIN_REAL("sleep", sleep), SKEIN_VEC3("position", x, y, 0),
-                                            SKEIN_VEC3("rotation", turned, 15, 0)),
-                             &body));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.25, 0.25),
+                                     SKEIN_TEXT("pins", pins), SKEIN_REAL("sleep", sleep),
+                                     SKEIN_VEC3("position", x, y, 0), SKEIN_VEC3("rotation", turned, 15, 0)),
+                      &body));
     return body;
 }
 
@@ -52,7 +55,8 @@ static void what_rests_sleeps_and_counts(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++) {
         if (!strcmp(all_methods[m], "explicit_euler") || (SANITIZED && m % 3)) continue; // there nothing rests
         skein_world *world = ground(all_methods[m], 1);
-        if (strcmp(all_methods[m], "xpbd") != 0 && strcmp(all_methods[m], "pbd") != 0 && strcmp(all_methods[m], "backward_euler") != 0)
+        if (strcmp(all_methods[m], "xpbd") != 0 && strcmp(all_methods[m], "pbd") != 0 &&
+            strcmp(all_methods[m], "backward_euler") != 0)
             OK(world, skein_set_path(world, "method.substeps", skein_number(100)));
         skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3);
         static const char *const names[] = {"stretch.stiffness", "shear.stiffness"};
@@ -138,17 +142,20 @@ static void those_who_touch_sleep_together(void **state) {
     skein_world *world = ground("xpbd", 1);
     skein_handle far = sheet(world, "far", "", 0.05, 3, 0.1, 3);
     skein_handle low = sheet(world, "low", "", 0.05, 0, 0.1, 3), high = sheet(world, "high", "", 0.05, 0.05, 1.5, 3);
-    skein_handle restless = sheet(world, "restless", "", 0, 6, 0.1, 3), on_it = sheet(world, "on it", "", 0.05, 6, 0.2, 3);
-    skein_handle held = sheet(world, "held", "all", 0, 9, 0.05, 0), on_held = sheet(world, "on held", "", 0.05, 9, 0.2, 3);
+    skein_handle restless = sheet(world, "restless", "", 0, 6, 0.1, 3),
+                 on_it = sheet(world, "on it", "", 0.05, 6, 0.2, 3);
+    skein_handle held = sheet(world, "held", "all", 0, 9, 0.05, 0),
+                 on_held = sheet(world, "on held", "", 0.05, 9, 0.2, 3);
     bool far_alone = false;
     for (int i = 0; i < 600 && !(skein_body_asleep(world, high) && skein_body_asleep(world, on_held)); i++) {
         steps(world, 1, dt);
         far_alone |= skein_body_asleep(world, far) && !skein_body_asleep(world, low);
-        assert_true(skein_body_asleep(world, low) == skein_body_asleep(world, high) || position_of(world, first_of(world, high)).y > 0.2);
+        assert_true(skein_body_asleep(world, low) == skein_body_asleep(world, high) ||
+                    position_of(world, first_of(world, high)).y > 0.2);
     }
     (void)far_alone;
     assert_true(skein_body_asleep(world, far) && skein_body_asleep(world, low) && skein_body_asleep(world, high));
-    assert_true(skein_body_asleep(world, on_held) && !skein_body_asleep(world, held));   // what is pinned is no hindrance
+    assert_true(skein_body_asleep(world, on_held) && !skein_body_asleep(world, held)); // what is pinned is no hindrance
     assert_false(skein_body_asleep(world, restless) || skein_body_asleep(world, on_it)); // what may not sleep is
     // what wakes one of a pile wakes all of it, and nobody else
     OK(world, skein_velocities_set(world, first_of(world, high), 1, (const double[]){0, 0.1, 0}));
@@ -158,7 +165,8 @@ static void those_who_touch_sleep_together(void **state) {
     // what is tied to another is awake with it
     until_asleep(world, low, 600);
     skein_handle tie;
-    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, far), first_of(world, low)}, 1, NULL, &tie));
+    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, far), first_of(world, low)}, 1,
+                                   NULL, &tie));
     steps(world, 1, dt);
     assert_false(skein_body_asleep(world, far) || skein_body_asleep(world, on_held)); // a rule was added
     for (int i = 0; i < 600 && !skein_body_asleep(world, low); i++) steps(world, 1, dt);
@@ -175,7 +183,8 @@ static void what_falls_wakes_before_it_lands(void **state) {
     (void)state;
     for (int fast = 0; fast < 2; fast++) {
         skein_world *world = ground("xpbd", 1);
-        skein_handle low = sheet(world, "low", "", 0.05, 0, 0.1, 3), high = sheet(world, "high", "top edge", 0.05, 0, 4, 90);
+        skein_handle low = sheet(world, "low", "", 0.05, 0, 0.1, 3),
+                     high = sheet(world, "high", "top edge", 0.05, 0, 4, 90);
         until_asleep(world, low, 600);
         until_asleep(world, high, 1200);
         const uint32_t first = first_of(world, high);
@@ -204,7 +213,8 @@ static void colliders_wake_whom_they_come_near(void **state) {
     (void)state;
     skein_world *world = ground("xpbd", 1);
     skein_handle ball, a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "", 0.05, 2, 0.1, 3);
-    OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 0, 1, 0)), &ball));
+    OK(world, skein_collider_add(world, "sphere",
+                                 SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 0, 1, 0)), &ball));
     until_asleep(world, a, 600);
     until_asleep(world, b, 600);
     for (int i = 1; i < 40; i++) { // a program moves it in every step, and says again what it is
@@ -248,7 +258,8 @@ static void calls_wake(void **state) {
     (void)state;
     enum { GRAVITY, METHOD, FORCE, REMOVE, TIME, BODY, PIN, PLACE, CUT, PINS, RESET, CALLS };
     skein_world *world = ground("xpbd", 1);
-    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "corners", 0.05, 2, 0.1, 3), force = {0, 0, 0};
+    skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "corners", 0.05, 2, 0.1, 3),
+                 force = {0, 0, 0};
     const uint32_t first[] = {first_of(world, a), first_of(world, b)};
     for (int call = 0; call < CALLS; call++) {
         until_asleep(world, a, 900);
@@ -258,7 +269,9 @@ static void calls_wake(void **state) {
         switch (call) {
         case GRAVITY: OK(world, skein_set_path(world, "forces.0.acceleration", skein_vector(0, -9, 0))); break;
         case METHOD: OK(world, skein_set_path(world, "method.substeps", skein_number(6))); break;
-        case FORCE: OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0, 0, 0)), &force)); break;
+        case FORCE:
+            OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0, 0, 0)), &force));
+            break;
         case REMOVE: OK(world, skein_remove(world, force)); break;
         case TIME: OK(world, skein_world_time_set(world, 3)); break;
         case BODY: OK(world, skein_set(world, b, "visible", skein_number(1))), all = false; break;
@@ -319,9 +332,7 @@ static void what_loses_its_hold_falls(void **state) {
             case UNPINNED:
                 for (uint32_t i = 0; i < 81; i++) OK(world, skein_particle_pin(world, first + i, false));
                 break;
-            case LED:
-                OK(world, skein_pins_move(world, which, 81, x));
-                break;
+            case LED: OK(world, skein_pins_move(world, which, 81, x)); break;
             default: OK(world, skein_body_teleport(world, body, NULL, up)); break;
             }
             steps(world, 6, dt); // it has begun to fall
@@ -341,9 +352,13 @@ static void what_a_collider_held_falls(void **state) {
     for (int way = 0; way < WAYS; way++) {
         skein_world *world = ground("xpbd", 1);
         skein_handle box, body = sheet(world, "body", "", 0.05, 0, 0.58, 0);
-        OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 0.5, 1), SKEIN_VEC3("centre", 0, 0.3, 0), SKEIN_REAL("thickness", 0.02)), &box));
+        OK(world, skein_collider_add(world, "box",
+                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 0.5, 1), SKEIN_VEC3("centre", 0, 0.3, 0),
+                                                    SKEIN_REAL("thickness", 0.02)),
+                                     &box));
         until_asleep(world, body, 600);
-        if (way == MOVED || way == BOTH) OK(world, skein_set(world, box, "centre", skein_vector(0, way == BOTH ? 0.299 : -1, 0)));
+        if (way == MOVED || way == BOTH)
+            OK(world, skein_set(world, box, "centre", skein_vector(0, way == BOTH ? 0.299 : -1, 0)));
         if (way == SMALLER || way == BOTH) OK(world, skein_set(world, box, "size", skein_vector(1, 0.3, 1)));
         if (way == THIN) OK(world, skein_set(world, box, "thickness", skein_number(0.001)));
         if (way == OFF) OK(world, skein_set(world, box, "enabled", skein_number(0)));
@@ -421,7 +436,9 @@ static void loose_ends_count(void **state) {
                 skein_world *world = ground(methods[m], 1);
                 skein_handle body = sheet(world, "body", "top edge", 0.05, 0, 1.5, 90);
                 const uint32_t end = first_of(world, body) + 72, weight = add_particle(world, 0.01, 0.125, 1.1, 0);
-                OK(world, skein_constraint_add(world, "distance", order ? (const uint32_t[]){weight, end} : (const uint32_t[]){end, weight}, 1, NULL, NULL));
+                OK(world, skein_constraint_add(world, "distance",
+                                               order ? (const uint32_t[]){weight, end} : (const uint32_t[]){end, weight},
+                                               1, NULL, NULL));
                 if (pinned) OK(world, skein_particle_pin(world, weight, true));
                 for (int i = 0; i < 300; i++) {
                     steps(world, 1, dt);
@@ -445,7 +462,8 @@ static void what_comes_back_is_joined_again(void **state) {
     (void)state;
     skein_world *world = ground("xpbd", 1);
     skein_handle a = sheet(world, "a", "", 0.05, 0, 0.1, 3), b = sheet(world, "b", "", 0.05, 2, 0.1, 3);
-    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, b), first_of(world, a)}, 1, NULL, NULL));
+    OK(world, skein_constraint_add(world, "distance", (const uint32_t[]){first_of(world, b), first_of(world, a)}, 1,
+                                   NULL, NULL));
     until_asleep(world, a, 600);
     assert_true(skein_body_asleep(world, b));
     OK(world, skein_set(world, a, "enabled", skein_number(0)));
@@ -468,10 +486,15 @@ static void what_sets_out_fast_is_seen(void **state) {
     for (int sleeps = 0; sleeps < 2; sleeps++) {
         skein_world *world = ground("xpbd", 1);
         skein_handle body = sheet(world, "body", "corners", sleeps ? 0.05 : 0, 0, 1.5, 0);
-        OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_VEC3("size", 0.1, 0.02, 0.1), SKEIN_VEC3("centre", 0, 1.57, 0)), NULL));
+        OK(world, skein_collider_add(world, "box",
+                                     SKEIN_SETTINGS(SKEIN_TEXT("name", "box"), SKEIN_VEC3("size", 0.1, 0.02, 0.1),
+                                                    SKEIN_VEC3("centre", 0, 1.57, 0)),
+                                     NULL));
         sheet(world, "other", "corners", 0, 5, 1.5, 0);
         OK(world, skein_motion_add(world, "keys", NULL,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("on", "other"), SKEIN_TEXT("keys", "0 0 0 0, 3 0 0 0, 3.02 0 -0.2 0")), NULL));
+                                   SKEIN_SETTINGS(SKEIN_TEXT("colliders", "box"), SKEIN_TEXT("on", "other"),
+                                                  SKEIN_TEXT("keys", "0 0 0 0, 3 0 0 0, 3.02 0 -0.2 0")),
+                                   NULL));
         steps(world, 178, dt);
         assert_true(skein_body_asleep(world, body) == (sleeps == 1));
         steps(world, 6, dt);
@@ -485,7 +508,8 @@ static void what_sets_out_fast_is_seen(void **state) {
 /* Vertices of a mesh that are set far, onto what sleeps, or away from under it, in a step. */
 static void vertices_that_are_led_are_seen(void **state) {
     (void)state;
-    static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4}, faces[24] = {0, 1, 3, 2, 4, 6, 7, 5, 0, 4, 5, 1, 2, 3, 7, 6, 0, 2, 6, 4, 1, 5, 7, 3};
+    static const uint32_t sizes[6] = {4, 4, 4, 4, 4, 4},
+                          faces[24] = {0, 1, 3, 2, 4, 6, 7, 5, 0, 4, 5, 1, 2, 3, 7, 6, 0, 2, 6, 4, 1, 5, 7, 3};
     for (int onto = 0; onto < 2; onto++) {
         double at[8][3], to[8][3];
         for (int i = 0; i < 8; i++) {
@@ -494,7 +518,12 @@ static void vertices_that_are_led_are_seen(void **state) {
             memcpy(to[i], (const double[]){x, y + (onto ? 1.15 : -3), z}, sizeof to[i]);
         }
         skein_world *world = ground("xpbd", 1);
-        skein_mesh mesh = {.positions = &at[0][0], .vertex_count = 8, .face_sizes = sizes, .face_count = 6, .face_vertices = faces, .face_vertex_count = 24};
+        skein_mesh mesh = {.positions = &at[0][0],
+                           .vertex_count = 8,
+                           .face_sizes = sizes,
+                           .face_count = 6,
+                           .face_vertices = faces,
+                           .face_vertex_count = 24};
         skein_handle box, body = sheet(world, "body", onto ? "corners" : "", 0.05, 0, onto ? 1.2 : 0.56, 0);
         OK(world, skein_collider_add_mesh(world, "mesh", &mesh, NULL, &box));
         OK(world, skein_collider_vertices_set(world, box, &at[0][0], 8)); // where they are: it is led, and stands
@@ -517,9 +546,15 @@ static void vertices_that_are_led_are_seen(void **state) {
 static void nobody_falls_asleep_in_the_air(void **state) {
     (void)state;
     skein_world *world = ground("xpbd", 1);
-    skein_handle body = sheet(world, "body", "", 0.05, 0, 0.51, 0), led = sheet(world, "led", "corners", 0.05, 4, 1.5, 0);
-    OK(world, skein_collider_add(world, "formula", SKEIN_SETTINGS(SKEIN_TEXT("surface", "p.y - 0.5 + 5*min(max(t - 3, 0)*100, 1)"), SKEIN_TEXT("on", "body")), NULL));
-    OK(world, skein_motion_add(world, "keys", NULL, SKEIN_SETTINGS(SKEIN_TEXT("on", "led"), SKEIN_TEXT("keys", "0 0 0 0, 9 0 0.09 0")), NULL));
+    skein_handle body = sheet(world, "body", "", 0.05, 0, 0.51, 0),
+                 led = sheet(world, "led", "corners", 0.05, 4, 1.5, 0);
+    OK(world, skein_collider_add(world, "formula",
+                                 SKEIN_SETTINGS(SKEIN_TEXT("surface", "p.y - 0.5 + 5*min(max(t - 3, 0)*100, 1)"),
+                                                SKEIN_TEXT("on", "body")),
+                                 NULL));
+    OK(world,
+       skein_motion_add(world, "keys", NULL,
+                        SKEIN_SETTINGS(SKEIN_TEXT("on", "led"), SKEIN_TEXT("keys", "0 0 0 0, 9 0 0.09 0")), NULL));
     for (int i = 0; i < 300; i++) {
         steps(world, 1, dt);
         const double y = position_of(world, 40).y;
@@ -536,9 +571,11 @@ static void who_has_nothing_to_do_with_it_sleeps_on(void **state) {
     skein_world *world = ground("xpbd", 1);
     skein_handle ends[2];
     for (int k = 0; k < 2; k++) ends[k] = sheet(world, k ? "b" : "a", "", 0.05, k, 0.52, 0);
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", "plate"), SKEIN_PAIR("grid", 5, 20), SKEIN_PAIR("size", 2, 0.5), SKEIN_TEXT("pins", "all"),
-                                            SKEIN_VEC3("position", 0.5, 0.5, 0)), NULL));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", "plate"), SKEIN_PAIR("grid", 5, 20), SKEIN_PAIR("size", 2, 0.5),
+                                     SKEIN_TEXT("pins", "all"), SKEIN_VEC3("position", 0.5, 0.5, 0)),
+                      NULL));
     until_asleep(world, ends[0], 600);
     until_asleep(world, ends[1], 600);
     throw_particle(world, first_of(world, ends[0]) + 40, 0, 0.3, 0);
@@ -575,14 +612,17 @@ typedef struct lifting_params {
 
 static void lifting(const void *params, double time, const skein_lanes *in, skein_real force[3][SKEIN_LANES]) {
     (void)params;
-    for (int i = 0; i < SKEIN_LANES; i++) force[0][i] = force[2][i] = 0, force[1][i] = (skein_real)(time > 3 ? 30 : 0) * in->mass[i];
+    for (int i = 0; i < SKEIN_LANES; i++)
+        force[0][i] = force[2][i] = 0, force[1][i] = (skein_real)(time > 3 ? 30 : 0) * in->mass[i];
 }
 
 static void functions_of_a_program_keep_awake(void **state) {
     (void)state;
-    static const skein_collider_type collider = {.kind = {"sinking", "sinks after 3 s", SKEIN_COLLIDER, NULL, 0, 0}, .distance = sinking};
+    static const skein_collider_type collider = {.kind = {"sinking", "sinks after 3 s", SKEIN_COLLIDER, NULL, 0, 0},
+                                                 .distance = sinking};
     static const skein_field fields[] = {SKEIN_FIELD_OF_TEXT(lifting_params, label, "label", "which", "words")};
-    static const skein_force_type force = {.kind = {"lifting", "lifts after 3 s", SKEIN_FORCE, fields, 1, sizeof(lifting_params)}, .force = lifting};
+    static const skein_force_type force = {
+        .kind = {"lifting", "lifts after 3 s", SKEIN_FORCE, fields, 1, sizeof(lifting_params)}, .force = lifting};
     skein_kinds *kinds = skein_kinds_create(NULL);
     skein_error error;
     assert_int_equal(skein_kind_register(kinds, &collider.kind, &error), SKEIN_OK);
@@ -618,7 +658,8 @@ static void gradients_refuse_sleep(void **state) {
     sheet(world, "body", "", 0.05, 0, 1, 0);
     skein_gradient_desc desc = {.steps = 3, .dt = dt, .measure = no_measure};
     skein_gradient_result result = {.value = 0};
-    FAILS(world, SKEIN_ERROR_VALUE, sizeof(skein_real) == sizeof(double) ? "sleep" : "double precision", skein_gradient(world, &desc, &result));
+    FAILS(world, SKEIN_ERROR_VALUE, sizeof(skein_real) == sizeof(double) ? "sleep" : "double precision",
+          skein_gradient(world, &desc, &result));
     skein_world_destroy(world);
 }
 
@@ -651,10 +692,11 @@ static void what_may_be_moved_does_not_sleep(void **state) {
         skein_world *world = ground("xpbd", 1);
         skein_handle a = sheet(world, "a", k == 2 ? "corners" : "", 0.05, 0, 0.1, 3);
         if (k < 2)
-            OK(world, skein_collider_add(world, "sphere",
-                                         SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", k ? 4 : 0, -0.1, 0),
-                                                        SKEIN_REAL("motion.spin", 0.01), SKEIN_REAL("friction", 0)),
-                                         NULL));
+            OK(world,
+               skein_collider_add(world, "sphere",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", k ? 4 : 0, -0.1, 0),
+                                                 SKEIN_REAL("motion.spin", 0.01), SKEIN_REAL("friction", 0)),
+                                  NULL));
         else OK(world, skein_motion_add(world, "translate", NULL, SKEIN_SETTINGS(SKEIN_REAL("inertia", 0.5)), NULL));
         steps(world, 300, dt);
         assert_true(skein_body_asleep(world, a) == (k == 1));
@@ -670,7 +712,8 @@ static skein_world *pile(int threads) {
     sheet(world, "b", "corners", 0.05, 2, 0.3, 0);
     sheet(world, "c", "", 0.05, 0.03, 4, 10); // it falls on what sleeps
     OK(world, skein_collider_add(world, "sphere",
-                                 SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 2, -4, 0), SKEIN_VEC3("motion.velocity", 0, 1, 0)),
+                                 SKEIN_SETTINGS(SKEIN_REAL("radius", 0.1), SKEIN_VEC3("centre", 2, -4, 0),
+                                                SKEIN_VEC3("motion.velocity", 0, 1, 0)),
                                  NULL)); // and it wakes b
     return world;
 }
@@ -715,7 +758,8 @@ static void it_goes_on_from_anywhere(void **state) {
             if (i > s * EVERY) nudge(other, i);
             steps(other, 1, dt);
             if (skein_world_hash(other) != hash[i] || statistics_of(other).asleep != asleep[i])
-                fail_msg("from step %d: other bits after step %d, %zu asleep for %zu", s * EVERY, i, statistics_of(other).asleep, asleep[i]);
+                fail_msg("from step %d: other bits after step %d, %zu asleep for %zu", s * EVERY, i,
+                         statistics_of(other).asleep, asleep[i]);
         }
         skein_world_destroy(other);
     }
@@ -807,8 +851,10 @@ static int play(purse *p) {
     if (world && !skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 2))) &&
         !skein_force_add(world, "gravity", NULL, NULL) && !skein_force_add(world, "contact", NULL, NULL) &&
         !skein_collider_add(world, "plane", NULL, NULL) &&
-        !skein_body_add(world, "cloth", NULL,
-                        SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_REAL("sleep", 1), SKEIN_VEC3("position", 0, 0.01, 0)), NULL)) {
+        !skein_body_add(
+            world, "cloth", NULL,
+            SKEIN_SETTINGS(SKEIN_PAIR("grid", 4, 4), SKEIN_REAL("sleep", 1), SKEIN_VEC3("position", 0, 0.01, 0)),
+            NULL)) {
         failed = 0;
         for (int f = 0; f < 20; f++) {
             skein_statistics s;

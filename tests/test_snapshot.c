@@ -209,7 +209,8 @@ static void every_scene(void **state) {
         char path[400];
         size_t length = strlen(entry->d_name);
         if (length < 5 || strcmp(entry->d_name + length - 5, ".json") != 0) continue;
-        if (!strcmp(entry->d_name, "elephant.json") || !strcmp(entry->d_name, "statue.json")) continue; // meshes are to be fetched
+        if (!strcmp(entry->d_name, "elephant.json") || !strcmp(entry->d_name, "statue.json"))
+            continue; // meshes are to be fetched
         snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         skein_world *one = load(path);
         if (skein_particle_count(one) > (SANITIZED ? 1000u : 20000u)) {
@@ -239,13 +240,15 @@ static void place_slab(double x, double corner[8][3]) {
 
 /* A sheet that lies on a cube, tied to it by a corner. */
 static skein_world *with_slab(skein_handle *slab) {
-    static const uint32_t quads[] = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5}, sizes[] = {4, 4, 4, 4, 4, 4};
+    static const uint32_t quads[] = {0, 2, 3, 1, 4, 5, 7, 6, 0, 1, 5, 4, 2, 6, 7, 3, 0, 4, 6, 2, 1, 3, 7, 5},
+                          sizes[] = {4, 4, 4, 4, 4, 4};
     double corner[8][3];
     skein_world *world = new_world("xpbd", 5);
     place_slab(0, corner);
     OK(world, skein_collider_add_mesh(world, "mesh", &(skein_mesh){corner[0], 8, sizes, 6, quads, 24}, NULL, slab));
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 11, 11), SKEIN_PAIR("size", 0.5, 0.5), SKEIN_VEC3("position", 0, 0.305, 0), SKEIN_TEXT("pins", "0")),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 11, 11), SKEIN_PAIR("size", 0.5, 0.5),
+                                            SKEIN_VEC3("position", 0, 0.305, 0), SKEIN_TEXT("pins", "0")),
                              NULL));
     OK(world, skein_motion_add(world, "attach", NULL, NULL, NULL));
     add_gravity(world);
@@ -301,7 +304,8 @@ static void seats_are_where_all_was_built(void **state) {
     static const struct {
         const char *name;
         skein_value value;
-    } sets[] = {{"scale", {1, {1.5, 0, 0}, NULL}}, {"position", {3, {0.1, 0, 0}, NULL}}, {"rotation", {3, {0, 0, 20}, NULL}}};
+    } sets[] = {
+        {"scale", {1, {1.5, 0, 0}, NULL}}, {"position", {3, {0.1, 0, 0}, NULL}}, {"rotation", {3, {0, 0, 20}, NULL}}};
     for (size_t i = 0; i < COUNT(sets); i++) {
         skein_handle slab, other_slab;
         skein_world *world = with_slab(&slab), *other = with_slab(&other_slab);
@@ -350,8 +354,10 @@ static skein_world *with_sheets(double thickness) {
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness)), NULL));
     OK(world, skein_collider_add(world, "plane", NULL, NULL));
     for (int i = 0; i < 2; i++)
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.01 * i, 0.002 + 0.003 * i, 0)), NULL));
+        OK(world,
+           skein_body_add(
+               world, "cloth", NULL,
+               SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 6), SKEIN_VEC3("position", 0.01 * i, 0.002 + 0.003 * i, 0)), NULL));
     return world;
 }
 

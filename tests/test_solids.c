@@ -54,8 +54,8 @@ static void its_energy_is_the_closed_form(void **state) {
         {0.7, 0.2, -0.1, 0.3, 0.9, 0.2, 0.1, 0, 0.6} // anyhow
     };
     const double mu = 2e4, lambda = 8e4;
-    skein_world *world = build((const char *const[]){"constraints.0.parameters.mu=2e4",
-                                                     "constraints.0.parameters.lambda=8e4", NULL});
+    skein_world *world =
+        build((const char *const[]){"constraints.0.parameters.mu=2e4", "constraints.0.parameters.lambda=8e4", NULL});
     double volume = volume_of(world), unit = volume * mu;
     size_t count = skein_particle_count(world);
     double(*x)[3] = malloc(2 * count * sizeof *x), (*y)[3] = x + count;
@@ -65,7 +65,8 @@ static void its_energy_is_the_closed_form(void **state) {
         double i1 = 0;
         for (int i = 0; i < 9; i++) i1 += f[i] * f[i];
         for (size_t p = 0; p < count; p++)
-            for (size_t k = 0; k < 3; k++) y[p][k] = f[3 * k] * x[p][0] + f[3 * k + 1] * x[p][1] + f[3 * k + 2] * x[p][2];
+            for (size_t k = 0; k < 3; k++)
+                y[p][k] = f[3 * k] * x[p][0] + f[3 * k + 1] * x[p][1] + f[3 * k + 2] * x[p][2];
         OK(world, skein_positions_set(world, 0, count, y[0]));
         double energy = volume * (mu / 2 * (i1 - 3 - 2 * l) + lambda / 2 * l * l);
         assert_near(statistics_of(world).elastic_energy, energy, 1e-3 * fabs(energy) + 1e-4 * unit);

@@ -250,9 +250,8 @@ static void the_motion_is_that_of_conjugate_gradients_alone(void **state) {
         turns += b.newton_iterations;
         off = fmax(off, farthest(alone, world));
     }
-    printf(
-        "%zu contacts, %zu iterations of Newton's method, %zu of conjugate gradients instead of %zu, off by %.2g m\n",
-        contacts, turns, iterations[1], iterations[0], off);
+    printf("%zu contacts, %zu iterations of Newton's method, %zu of conjugate gradients instead of %zu, off by %.2g m\n",
+           contacts, turns, iterations[1], iterations[0], off);
     assert_under(off, far_enough);
     assert_true(contacts > 50);
     assert_true(6 * iterations[1] < iterations[0]);

@@ -71,7 +71,8 @@ static tally check(scene *make, int substeps, bool moved, double share) {
     return one;
 }
 
-static void add_sheet(skein_world *world, const char *pins, const double at[3], const double turned[3], const double velocity[3]) {
+static void add_sheet(skein_world *world, const char *pins, const double at[3], const double turned[3],
+                      const double velocity[3]) {
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins),
                                             SKEIN_VEC3("position", at[0], at[1], at[2]),
@@ -107,7 +108,9 @@ static void what_swings_is_mostly_out(void **state) {
 
 static void swinging_irregular(skein_world *world) {
     add_contact(world, 0.003);
-    add_irregular(world, SANITIZED ? 20 : 40, SKEIN_SETTINGS(SKEIN_TEXT("pins", SANITIZED ? "0 61" : "0 41"), SKEIN_VEC3("position", 0, 2, 0))); // two corners
+    add_irregular(world, SANITIZED ? 20 : 40,
+                  SKEIN_SETTINGS(SKEIN_TEXT("pins", SANITIZED ? "0 61" : "0 41"),
+                                 SKEIN_VEC3("position", 0, 2, 0))); // two corners
 }
 
 static void meshes_are_out_too(void **state) {
@@ -158,11 +161,17 @@ static void cut_ring(skein_world *world) {
             sizes[f] = 4;
             vertices[f][0] = a, vertices[f][1] = a + 1, vertices[f][2] = a + ACROSS + 1, vertices[f][3] = a + ACROSS;
         }
-    skein_mesh mesh = {.positions = positions[0], .vertex_count = COUNT, .face_sizes = sizes, .face_count = FACES,
-                       .face_vertices = vertices[0], .face_vertex_count = 4 * FACES};
+    skein_mesh mesh = {.positions = positions[0],
+                       .vertex_count = COUNT,
+                       .face_sizes = sizes,
+                       .face_count = FACES,
+                       .face_vertices = vertices[0],
+                       .face_vertex_count = 4 * FACES};
     add_contact(world, 0.004);
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.1)), NULL));
-    OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.4, 0), SKEIN_VEC3("rotation", 60, 20, 0)), NULL));
+    OK(world,
+       skein_body_add(world, "cloth", &mesh,
+                      SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.4, 0), SKEIN_VEC3("rotation", 60, 20, 0)), NULL));
 }
 
 static void beside_a_cut_nobody_is_out(void **state) {
@@ -251,16 +260,19 @@ static void one_held_back_brings_in_those_around(void **state) {
     skein_world *world = world_about_to_go(hanging);
     sk_touch *touch = touch_of(world);
     const sk_spread *spread = &touch->spread;
-    const uint32_t v = (uint32_t)touch->skin.vertex_count / 2, p = spread->of_leaf[touch->skin.leaf_of[touch->skin.leaf_start[v]]];
+    const uint32_t v = (uint32_t)touch->skin.vertex_count / 2,
+                   p = spread->of_leaf[touch->skin.leaf_of[touch->skin.leaf_start[v]]];
     memset(touch->lost, 0, touch->skin.vertex_count);
     sk_spread_disturb(touch, v);
     assert_true(spread->came_in && sk_spread_come_in(touch) && !spread->came_in && touch->lost[v] && touch->wild[v]);
     size_t in = 0;
     for (size_t i = 0; i < spread->count; i++) in += !spread->out[i];
     assert_true(in >= 4 && in <= 36 && spread->out_count == spread->count - in);
-    for (uint32_t i = spread->beside.start[p]; i < spread->beside.start[p + 1]; i++) assert_false(spread->out[spread->beside.number[i]]);
+    for (uint32_t i = spread->beside.start[p]; i < spread->beside.start[p + 1]; i++)
+        assert_false(spread->out[spread->beside.number[i]]);
     for (size_t l = 0; l < touch->skin.leaf_count; l++) // all of what came in is looked for
-        for (uint32_t t = touch->skin.leaf[l].first_triangle, k = 0; k < touch->skin.leaf[l].triangles && !sk_spread_has(spread, l); k++, t++)
+        for (uint32_t t = touch->skin.leaf[l].first_triangle, k = 0;
+             k < touch->skin.leaf[l].triangles && !sk_spread_has(spread, l); k++, t++)
             for (int c = 0; c < 3; c++) assert_true(touch->lost[touch->skin.triangle[t][c]]);
     assert_true(sk_spread_end(touch));
     assert_int_equal(spread->out_count, 0);
@@ -269,10 +281,16 @@ static void one_held_back_brings_in_those_around(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(what_hangs_is_out),   cmocka_unit_test(what_swings_is_mostly_out), cmocka_unit_test(meshes_are_out_too),
-        cmocka_unit_test(what_meets_comes_in), cmocka_unit_test(what_folds_comes_in),       cmocka_unit_test(beside_a_cut_nobody_is_out),
-        cmocka_unit_test(what_is_off_its_course_is_seen), cmocka_unit_test(what_stays_is_out),
-        cmocka_unit_test(what_changes_fast_comes_in), cmocka_unit_test(the_common_way_counts_where_somebody_is_held_back),
+        cmocka_unit_test(what_hangs_is_out),
+        cmocka_unit_test(what_swings_is_mostly_out),
+        cmocka_unit_test(meshes_are_out_too),
+        cmocka_unit_test(what_meets_comes_in),
+        cmocka_unit_test(what_folds_comes_in),
+        cmocka_unit_test(beside_a_cut_nobody_is_out),
+        cmocka_unit_test(what_is_off_its_course_is_seen),
+        cmocka_unit_test(what_stays_is_out),
+        cmocka_unit_test(what_changes_fast_comes_in),
+        cmocka_unit_test(the_common_way_counts_where_somebody_is_held_back),
         cmocka_unit_test(one_held_back_brings_in_those_around),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

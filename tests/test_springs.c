@@ -5,8 +5,8 @@
 static const double g = 9.81;
 
 /* A mass on a spring along x: held at 0, rest length 1, pulled out to 1 + `stretch`. */
-static skein_world *oscillator(const char *method, int substeps, int iterations, double mass, double stiffness, double damping,
-                               double stretch) {
+static skein_world *oscillator(const char *method, int substeps, int iterations, double mass, double stiffness,
+                               double damping, double stretch) {
     skein_world *world = new_world(method, substeps);
     if (iterations) OK(world, skein_set_path(world, "method.iterations", skein_number(iterations)));
     uint32_t anchor = add_particle(world, 0, 0, 0, 0), bob = add_particle(world, mass, 1, 0, 0);
@@ -55,7 +55,8 @@ static void an_oscillator_has_its_period_and_decay(void **state) {
                 // XPBD moves positions by whole roundings of theirs: in float more substeps make that worse
                 bool exact = m == 0 || EPSILON < 1e-10;
                 double rate = EPSILON < 1e-10 ? 9000 : 1800;
-                skein_world *world = oscillator(method_names[m], (int)(rate / 180), 0, masses[i], stiffness, dampings[c], 0.25);
+                skein_world *world =
+                    oscillator(method_names[m], (int)(rate / 180), 0, masses[i], stiffness, dampings[c], 0.25);
                 swing seen = watch(world, 1.0 / 180, 5);
                 assert_int_equal(seen.turns, 5);
                 assert_share(seen.period, 2 * PI / omega, exact ? 5e-4 : 6e-3);
@@ -119,7 +120,8 @@ static void damping_leaves_other_motion_alone(void **state) {
         add_spring(world, 0, 1, 2000, 5);
         steps(world, 120, 1.0 / 60);
         // the turning pulls the spring out to r with k (2r - 1) = v^2/r: angular momentum r v stays
-        vec3 across = minus(position_of(world, 1), position_of(world, 0)), apart = minus(velocity_of(world, 1), velocity_of(world, 0));
+        vec3 across = minus(position_of(world, 1), position_of(world, 0)),
+             apart = minus(velocity_of(world, 1), velocity_of(world, 0));
         double turning = fabs(across.x * apart.y - across.y * apart.x);
         assert_share(turning, 2, m ? 0.02 : 1e-3);
         assert_share(velocity_of(world, 0).z, 0.2, 0.01);
@@ -134,7 +136,8 @@ static void a_rigid_pendulum_keeps_time(void **state) {
     double length = 0.7, angle = 0.2;
     skein_world *world = new_world("xpbd", 20);
     add_gravity(world);
-    uint32_t pivot = add_particle(world, 0, 0, 2, 0), bob = add_particle(world, 0.3, length * sin(angle), 2 - length * cos(angle), 0);
+    uint32_t pivot = add_particle(world, 0, 0, 2, 0),
+             bob = add_particle(world, 0.3, length * sin(angle), 2 - length * cos(angle), 0);
     add_spring(world, pivot, bob, INFINITY, 0);
     double first = 0, last = 0, before = 1, widest = 0;
     int turns = -1;
@@ -185,15 +188,20 @@ static void springs_join_bodies_and_loose_particles(void **state) {
     for (size_t m = 0; m < COUNT(method_names); m++)
         for (int damped = 0; damped < 2; damped++) {
             skein_world *world = new_world(method_names[m], 1);
-            OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50), SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("stretch.tether", INFINITY),
-                                                    SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
-                                     NULL));
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 6, 7), SKEIN_REAL("density", 50),
+                                             SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("stretch.tether", INFINITY),
+                                             SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"),
+                                             SKEIN_REAL("bend.stiffness", 0)),
+                              NULL));
             vec3 knot = position_of(world, 16);
-            uint32_t weight = add_particle(world, 0.5, knot.x, knot.y - 0.5, knot.z), other = add_particle(world, 2, 3, 3, 3);
+            uint32_t weight = add_particle(world, 0.5, knot.x, knot.y - 0.5, knot.z),
+                     other = add_particle(world, 2, 3, 3, 3);
             uint32_t pairs[] = {16, weight, other, weight};
-            OK(world, skein_constraint_add(world, "distance", pairs, 2,
-                                           SKEIN_SETTINGS(SKEIN_REAL("stiffness", 30), SKEIN_REAL("damping", damped ? 1e-9 : 0)), NULL));
+            OK(world, skein_constraint_add(
+                          world, "distance", pairs, 2,
+                          SKEIN_SETTINGS(SKEIN_REAL("stiffness", 30), SKEIN_REAL("damping", damped ? 1e-9 : 0)), NULL));
             place_particle(world, weight, knot.x, knot.y - 0.75, knot.z); // the first is 0.25 m too long
             vec3 apart = minus(position_of(world, weight), (vec3){3, 3, 3});
             place_particle(world, other, 3, 3, 3);
@@ -220,8 +228,9 @@ static void the_same_pair_twice_is_twice_as_stiff(void **state) {
     for (int twice = 0; twice < 2; twice++) {
         skein_world *world = new_world("symplectic_euler", 10);
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_REAL("density", 5), SKEIN_REAL("stretch.stiffness", 0),
-                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_REAL("density", 5),
+                                                SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("shear.stiffness", 0),
+                                                SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0),
                                                 SKEIN_REAL("stretch.limit", INFINITY)),
                                  NULL));
         uint32_t pairs[2 * 2 * SIDE * SIDE];
@@ -229,8 +238,10 @@ static void the_same_pair_twice_is_twice_as_stiff(void **state) {
         for (int turn = 0; turn <= twice; turn++)
             for (uint32_t i = 0; i < SIDE * SIDE; i++)
                 if (i % SIDE) pairs[2 * count] = turn ? i : i - 1, pairs[2 * count++ + 1] = turn ? i - 1 : i;
-        OK(world, skein_constraint_add(world, "distance", pairs, count, SKEIN_SETTINGS(SKEIN_REAL("stiffness", twice ? 10 : 20)), NULL));
-        for (uint32_t i = 0; i < SIDE * SIDE; i++) throw_particle(world, i, 0.1 * (double)(i % 5), 0.2 * (double)(i % 3), -0.3 * (double)(i % 4));
+        OK(world, skein_constraint_add(world, "distance", pairs, count,
+                                       SKEIN_SETTINGS(SKEIN_REAL("stiffness", twice ? 10 : 20)), NULL));
+        for (uint32_t i = 0; i < SIDE * SIDE; i++)
+            throw_particle(world, i, 0.1 * (double)(i % 5), 0.2 * (double)(i % 3), -0.3 * (double)(i % 4));
         steps(world, 20, 1.0 / 90);
         for (size_t i = 0; i < SIDE * SIDE; i++) place[twice][i] = position_of(world, i);
         skein_world_destroy(world);
@@ -249,8 +260,13 @@ static void hanging_weights_sag_as_much_however_they_are_stepped(void **state) {
     static const struct {
         const char *method;
         int substeps, iterations;
-    } ways[] = {{"symplectic_euler", 10, 0}, {"symplectic_euler", 35, 0}, {"xpbd", 10, 1}, {"xpbd", 40, 1},
-                {"xpbd", 10, 4},             {"xpbd", 3, 20},             {"xpbd", 1, 60}};
+    } ways[] = {{"symplectic_euler", 10, 0},
+                {"symplectic_euler", 35, 0},
+                {"xpbd", 10, 1},
+                {"xpbd", 40, 1},
+                {"xpbd", 10, 4},
+                {"xpbd", 3, 20},
+                {"xpbd", 1, 60}};
     double mass = 0.1, stiffness = 60, sag = mass * g / stiffness * (WEIGHTS * (WEIGHTS + 1) / 2);
     for (size_t w = 0; w < COUNT(ways); w++) {
         skein_world *world = new_world(ways[w].method, ways[w].substeps);
@@ -290,11 +306,12 @@ static double sag_of_strip(const char *method, int substeps, int rows, int colum
         }
     skein_mesh mesh = {positions, (size_t)(rows * columns), sizes, faces, corners, filled};
     OK(world, skein_body_add(world, "cloth", triangles ? &mesh : NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", triangles ? 0 : rows, triangles ? 0 : columns), SKEIN_PAIR("size", 0.5, 1),
-                                            SKEIN_VEC3("rotation", triangles ? 0 : 90, 0, 0), SKEIN_REAL("density", 0.5),
-                                            SKEIN_TEXT("pins", "top edge"), SKEIN_REAL("stretch.stiffness", 20),
-                                            SKEIN_REAL("stretch.damping", 0.02), SKEIN_REAL("shear.stiffness", shear),
-                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", INFINITY),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", triangles ? 0 : rows, triangles ? 0 : columns),
+                                            SKEIN_PAIR("size", 0.5, 1), SKEIN_VEC3("rotation", triangles ? 0 : 90, 0, 0),
+                                            SKEIN_REAL("density", 0.5), SKEIN_TEXT("pins", "top edge"),
+                                            SKEIN_REAL("stretch.stiffness", 20), SKEIN_REAL("stretch.damping", 0.02),
+                                            SKEIN_REAL("shear.stiffness", shear), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 0), SKEIN_REAL("stretch.limit", INFINITY),
                                             SKEIN_REAL("stretch.tether", INFINITY)),
                              NULL));
     steps(world, 60 * 4, 1.0 / 60);
@@ -315,7 +332,8 @@ static void cloth_sags_as_much_at_any_resolution(void **state) {
             assert_share(sag_of_strip(method_names[m], n > 9 ? 24 : 16, n, (n + 1) / 2, 0, false), ought, 0.02);
     // shear makes it a little stiffer, but alike at both resolutions; so do triangles
     for (int triangles = 0; triangles < 2; triangles++) {
-        double coarse = sag_of_strip("xpbd", 12, 5, 3, 4, triangles), fine = sag_of_strip("xpbd", 16, 9, 5, 4, triangles);
+        double coarse = sag_of_strip("xpbd", 12, 5, 3, 4, triangles),
+               fine = sag_of_strip("xpbd", 16, 9, 5, 4, triangles);
         assert_share(fine, coarse, 0.04);
         assert_share(coarse, ought, 0.25);
     }

@@ -38,15 +38,15 @@ static skein_world *net(const char *method, double damping, double rate) {
     skein_world *world = new_world(method, 50);
     // what gains energy is held by damping alone, of every spring by its stiffness
     bool even = !strcmp(method, "explicit_euler") || !strcmp(method, "midpoint");
-    OK(world,
-       skein_body_add(world, "cloth", NULL,
-                      SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 8), SKEIN_TEXT("pins", "corners"),
-                                     SKEIN_REAL("stretch.stiffness", 400), SKEIN_REAL("stretch.damping", damping),
-                                     SKEIN_REAL("shear.stiffness", 100), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 50),
-                                     SKEIN_REAL("shear.damping", even ? damping / 4 : 0),
-                                     SKEIN_REAL("bend.damping", even ? damping / 8 : damping / 2),
-                                     SKEIN_REAL("stretch.limit", INFINITY), SKEIN_REAL("stretch.tether", INFINITY)),
-                      NULL));
+    OK(world, skein_body_add(
+                  world, "cloth", NULL,
+                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 8), SKEIN_TEXT("pins", "corners"),
+                                 SKEIN_REAL("stretch.stiffness", 400), SKEIN_REAL("stretch.damping", damping),
+                                 SKEIN_REAL("shear.stiffness", 100), SKEIN_TEXT("bend.by", "springs"),
+                                 SKEIN_REAL("bend.stiffness", 50), SKEIN_REAL("shear.damping", even ? damping / 4 : 0),
+                                 SKEIN_REAL("bend.damping", even ? damping / 8 : damping / 2),
+                                 SKEIN_REAL("stretch.limit", INFINITY), SKEIN_REAL("stretch.tether", INFINITY)),
+                  NULL));
     if (rate > 0) OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", rate)), NULL));
     uint64_t seed = 3;
     for (size_t i = 0; i < 72; i++) {

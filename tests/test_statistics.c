@@ -55,7 +55,11 @@ static void of_a_hundred_edges_one_stretches_more(void **state) {
             double stretch[MOST];
             skein_world *world = new_world("xpbd", 1);
             for (int i = 0; i < count; i++) {
-                const int at = order == 0 ? i * 77 % count : order == 1 ? i : order == 2 ? count - i : order == 3 ? abs(2 * i - count) : 0;
+                const int at = order == 0   ? i * 77 % count
+                               : order == 1 ? i
+                               : order == 2 ? count - i
+                               : order == 3 ? abs(2 * i - count)
+                                            : 0;
                 stretch[i] = order == 4 ? (i % 2 ? 0.1 : random_between(&seed, 0, 0.2)) : 0.2 * at / count;
                 add_particle(world, 1, 0, 0, i);
                 add_particle(world, 1, 1, 0, i);
@@ -77,7 +81,8 @@ static void a_sheet_holds_its_energy_at_any_resolution(void **state) {
         skein_world *world = new_world("xpbd", 1);
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", n, n), SKEIN_REAL("stretch.stiffness", 1000),
-                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0)),
+                                                SKEIN_REAL("shear.stiffness", 0), SKEIN_TEXT("bend.by", "springs"),
+                                                SKEIN_REAL("bend.stiffness", 0)),
                                  NULL));
         for (int i = 0; i < n * n; i++) {
             vec3 p = position_of(world, (size_t)i);
@@ -162,10 +167,10 @@ static void what_does_work_is_known(void **state) {
     assert_false(skein_world_is_driven(world));
     // one of the constraint's two rest lengths is at another time
     const uint32_t ends[] = {0, 1};
-    OK(world, skein_constraint_add(world, "formula", ends, 1,
-                                   SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - 1 - sin(t)"),
-                                                  SKEIN_REAL("stiffness", 10)),
-                                   NULL));
+    OK(world, skein_constraint_add(
+                  world, "formula", ends, 1,
+                  SKEIN_SETTINGS(SKEIN_TEXT("constraint", "length(p0 - p1) - 1 - sin(t)"), SKEIN_REAL("stiffness", 10)),
+                  NULL));
     assert_true(skein_world_is_driven(world));
     OK(world, skein_set_path(world, "constraints.1.enabled", skein_number(0)));
     assert_false(skein_world_is_driven(world));
@@ -176,12 +181,9 @@ static void what_does_work_is_known(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(sums_are_those_of_the_particles),
-        cmocka_unit_test(of_a_hundred_edges_one_stretches_more),
-        cmocka_unit_test(what_does_work_is_known),
-        cmocka_unit_test(a_sheet_holds_its_energy_at_any_resolution),
-        cmocka_unit_test(what_is_lost_is_counted),
-        cmocka_unit_test(flight_keeps_its_energy),
+        cmocka_unit_test(sums_are_those_of_the_particles), cmocka_unit_test(of_a_hundred_edges_one_stretches_more),
+        cmocka_unit_test(what_does_work_is_known),         cmocka_unit_test(a_sheet_holds_its_energy_at_any_resolution),
+        cmocka_unit_test(what_is_lost_is_counted),         cmocka_unit_test(flight_keeps_its_energy),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

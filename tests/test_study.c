@@ -47,18 +47,19 @@ static double number(const io_study *study, size_t row, size_t v) {
 }
 
 /* Things that fall: nothing but gravity. */
-#define FALLING                                                                                                     \
-    "'scene': {'frames': 10, 'step': 0.05, 'fps': 20, 'method': {'type': 'symplectic_euler', 'substeps': 1}, "      \
-    "'bodies': [{'type': 'flock', 'name': 'stones', 'count': 3, 'spread': [0, 0, 0], 'position': [1, 5, 2], "       \
+#define FALLING                                                                                                \
+    "'scene': {'frames': 10, 'step': 0.05, 'fps': 20, 'method': {'type': 'symplectic_euler', 'substeps': 1}, " \
+    "'bodies': [{'type': 'flock', 'name': 'stones', 'count': 3, 'spread': [0, 0, 0], 'position': [1, 5, 2], "  \
     "'speed': 0, 'mass': 2}], 'forces': [{'type': 'gravity', 'name': 'weight'}]}"
 
 /* ---- rows ---- */
 
 static void lists_and_ranges_make_a_grid(void **state) {
     (void)state;
-    io_study *study = good_study("{'study': 1, " FALLING ", 'vary': {'bodies.stones.mass': [1, 2.5], "
-                                 "'bodies.stones.position': [[0, 0.1, 0]], 'bodies.stones.speed': {'from': 0, 'to': 0.3, 'count': 4}, "
-                                 "'forces.weight.acceleration': [[0, -1, 0], [0, -2, 0]]}, 'measure': ['lowest']}");
+    io_study *study = good_study(
+        "{'study': 1, " FALLING ", 'vary': {'bodies.stones.mass': [1, 2.5], "
+        "'bodies.stones.position': [[0, 0.1, 0]], 'bodies.stones.speed': {'from': 0, 'to': 0.3, 'count': 4}, "
+        "'forces.weight.acceleration': [[0, -1, 0], [0, -2, 0]]}, 'measure': ['lowest']}");
     assert_int_equal(io_study_rows(study), 16);
     const double speeds[] = {0, 0.1, 0.2, 0.3}; // what people would write, not 0.30000000000000004
     for (size_t row = 0; row < 16; row++) {
@@ -71,7 +72,8 @@ static void lists_and_ranges_make_a_grid(void **state) {
                                  "'forces.weight.acceleration=[0,-2,0]'");
     free(command);
     io_study_free(study);
-    study = good_study("{'study': 1, " FALLING ", 'vary': {'bodies.0.mass': {'from': 0.01, 'to': 100, 'count': 5, 'scale': 'log'}, "
+    study = good_study("{'study': 1, " FALLING
+                       ", 'vary': {'bodies.0.mass': {'from': 0.01, 'to': 100, 'count': 5, 'scale': 'log'}, "
                        "'bodies.0.speed': {'from': 1, 'to': 0.05, 'step': -0.3}}, 'measure': ['lowest']}");
     assert_int_equal(io_study_rows(study), 5 * 4);
     const double masses[] = {0.01, 0.1, 1, 10, 100}, falling[] = {1, 0.7, 0.4, 0.1};
@@ -82,9 +84,9 @@ static void lists_and_ranges_make_a_grid(void **state) {
     io_study_free(study);
 }
 
-#define CHANCE(seed_)                                                                                             \
-    "{'study': 1, 'seed': " seed_ ", " FALLING ", 'vary': {'bodies.0.mass': {'random': [1, 3]}, "               \
-    "'bodies.0.seed': {'random': [1, 6], 'whole': true}, 'bodies.0.speed': {'random': [0.001, 1000], "          \
+#define CHANCE(seed_)                                                                                  \
+    "{'study': 1, 'seed': " seed_ ", " FALLING ", 'vary': {'bodies.0.mass': {'random': [1, 3]}, "      \
+    "'bodies.0.seed': {'random': [1, 6], 'whole': true}, 'bodies.0.speed': {'random': [0.001, 1000], " \
     "'scale': 'log'}}, 'repeat': 6000, 'measure': ['lowest']}"
 
 static void random_values_are_even_and_the_same_again(void **state) {
@@ -121,7 +123,8 @@ static void faults_have_places(void **state) {
     } all[] = {
         {"{'study': 1", "s.json: line 1, column"},
         {"[]", "a study is an object"},
-        {"{'study': 2, 'vary': {'a': [1]}, 'measure': ['lowest'], 'scene': 'rope'}", "study: expected a whole number, 1 to 1"},
+        {"{'study': 2, 'vary': {'a': [1]}, 'measure': ['lowest'], 'scene': 'rope'}",
+         "study: expected a whole number, 1 to 1"},
         {"{'vari': 3}", "vari: there is no member 'vari'; did you mean 'vary'?"},
         {"{'vary': {}}", "vary: expected fields and their values"},
         {"{'vary': {'a': 3}}", "vary.a: expected a list, a range"},
@@ -134,9 +137,11 @@ static void faults_have_places(void **state) {
         {"{'vary': {'a': {'random': [2, 1]}}}", "random: expected the least and the most"},
         {"{'vary': {'a': [1, 2]}, 'repeat': 2}", "rows would come out alike"},
         {"{'vary': {'a': [1]}, 'measure': []}", "measure: expected a list"},
-        {"{'vary': {'a': [1]}, 'measure': ['lowset']}", "measure.0: there is no measure 'lowset'; did you mean 'lowest'?"},
+        {"{'vary': {'a': [1]}, 'measure': ['lowset']}",
+         "measure.0: there is no measure 'lowset'; did you mean 'lowest'?"},
         {"{'vary': {'a': [1]}, 'measure': ['lowest', 'lowest']}", "the column 'lowest' is there twice"},
-        {"{'vary': {'a': [1]}, 'measure': [{'measure': 'contacts', 'body': 'x'}]}", "measure.0.body: contacts is of the whole world"},
+        {"{'vary': {'a': [1]}, 'measure': [{'measure': 'contacts', 'body': 'x'}]}",
+         "measure.0.body: contacts is of the whole world"},
         {"{'vary': {'a': [1]}, 'measure': [{'measure': 'lowest', 'over': 'all'}]}", "measure.0.over: expected"},
         {"{'vary': {'a': [1]}, 'measure': ['lowest'], 'plot': {'x': 'b'}}", "plot.x: 'b' is not varied"},
         {"{'vary': {'a': [1]}, 'measure': ['lowest'], 'plot': {'show': ['b']}}", "plot.show: 'b' is not measured"},
@@ -146,7 +151,8 @@ static void faults_have_places(void **state) {
         {"{'vary': {'bodies.stones.mass': [-1]}, 'measure': ['lowest'], " FALLING "}", "bodies.0.mass"},
         {"{'vary': {'bodies.stones.mass': [1]}, 'measure': [{'measure': 'lowest', 'body': 'stone'}], " FALLING "}",
          "there is no body of the name stone"},
-        {"{'vary': {'bodies.stones.groups': ['stone']}, 'measure': [{'measure': 'lowest', 'body': 'stone'}], " FALLING "}",
+        {"{'vary': {'bodies.stones.groups': ['stone']}, 'measure': [{'measure': 'lowest', 'body': 'stone'}], " FALLING
+         "}",
          "there is no body of the name stone; it is the name of a group, and one body is meant"},
     };
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
@@ -170,7 +176,8 @@ static const char *text_of(const json_t *result, const char *name) {
 static void measures_are_those_of_free_fall(void **state) {
     (void)state;
     io_study *study = good_study(
-        "{'study': 1, " FALLING ", 'set': {'frames': 20}, 'vary': {'forces.weight.acceleration': [[0, -2, 0], [0, -4, 0]]}, "
+        "{'study': 1, " FALLING
+        ", 'set': {'frames': 20}, 'vary': {'forces.weight.acceleration': [[0, -2, 0], [0, -4, 0]]}, "
         "'measure': ['lowest', 'centre_x', 'spread', 'kinetic_energy', {'measure': 'momentum_y', 'over': 'least'}, "
         "{'measure': 'highest', 'over': 'most', 'from': 0.5}, {'measure': 'highest', 'over': 'mean', 'every': 10, 'name': 'm'}]}");
     for (size_t row = 0; row < 2; row++) {
@@ -179,11 +186,17 @@ static void measures_are_those_of_free_fall(void **state) {
         for (int n = 0; n <= 20; n++) fallen[n] = g * h * h * n * (n + 1) / 2;
         assert_string_equal(text_of(result, "outcome"), "good");
         assert_int_equal(json_integer_value(json_object_get(result, "steps")), 20);
-        const double ought[] = {5 - fallen[20], 1,       0, 3 * 2 * pow(g * h * 20, 2) / 2, -3 * 2 * g * h * 20,
-                                5 - fallen[10], 5 - (fallen[10] + fallen[20]) / 3};
+        const double ought[] = {5 - fallen[20],
+                                1,
+                                0,
+                                3 * 2 * pow(g * h * 20, 2) / 2,
+                                -3 * 2 * g * h * 20,
+                                5 - fallen[10],
+                                5 - (fallen[10] + fallen[20]) / 3};
         for (size_t m = 0; m < 7; m++)
             if (fabs(measured(result, m) - ought[m]) > 1e-4 * (1 + fabs(ought[m])))
-                fail_msg("row %zu: %s is %.9g, not %.9g", row, io_study_measure(study, m), measured(result, m), ought[m]);
+                fail_msg("row %zu: %s is %.9g, not %.9g", row, io_study_measure(study, m), measured(result, m),
+                         ought[m]);
         json_decref(result);
     }
     assert_string_equal(io_study_measure(study, 4), "momentum_y_least");
@@ -198,9 +211,10 @@ static bool stop_at_once(void *user) {
 
 static void rows_are_alike_whoever_runs_them(void **state) {
     (void)state;
-    static const char text[] = "{'study': 1, 'scene': 'scenes/rope.json', 'set': {'frames': 20, 'bodies.0.stretch.stiffness': 1000}, "
-                               "'vary': {'method.type': ['xpbd', 'rk4', 'nothing'], 'method.substeps': [1, 2]}, "
-                               "'measure': ['lowest', 'max_stretch']}";
+    static const char text[] =
+        "{'study': 1, 'scene': 'scenes/rope.json', 'set': {'frames': 20, 'bodies.0.stretch.stiffness': 1000}, "
+        "'vary': {'method.type': ['xpbd', 'rk4', 'nothing'], 'method.substeps': [1, 2]}, "
+        "'measure': ['lowest', 'max_stretch']}";
     io_study *study = good_study(text);
     char hashes[6][20];
     for (size_t i = 0; i < 6; i++) {
@@ -261,7 +275,8 @@ static void a_scene_s_hash_is_of_what_acts(void **state) {
 
 /* ---- the folder ---- */
 
-static const char folder_study[] = "{'study': 1, " FALLING ", 'vary': {'bodies.0.mass': [1, 2, 3, 4, 5, 6, 7]}, 'measure': ['lowest']}";
+static const char folder_study[] =
+    "{'study': 1, " FALLING ", 'vary': {'bodies.0.mass': [1, 2, 3, 4, 5, 6, 7]}, 'measure': ['lowest']}";
 
 static char *in(const char *name) {
     static char path[4][200];
@@ -322,7 +337,8 @@ static void parts_make_the_whole(void **state) {
     skein_error error = {SKEIN_OK, "", ""};
     io_study *study = good_study(folder_study);
     io_study_folder *parts[3];
-    for (size_t p = 0; p < 3; p++) assert_non_null(parts[p] = io_study_folder_open(study, in("parts"), p + 1, 3, &error));
+    for (size_t p = 0; p < 3; p++)
+        assert_non_null(parts[p] = io_study_folder_open(study, in("parts"), p + 1, 3, &error));
     assert_int_equal(io_study_folder_missing(parts[0]), 3);
     assert_int_equal(io_study_folder_next(parts[1], 0), 1);
     assert_int_equal(io_study_folder_next(parts[1], 2), 4);

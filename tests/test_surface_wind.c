@@ -103,7 +103,8 @@ static void blow_on_sheet(const wind *w, const sheet *s, const vec3 *x, const ve
 
 static void shake(skein_world *world, uint64_t seed) {
     for (size_t i = 0; i < skein_particle_count(world); i++)
-        throw_particle(world, i, random_between(&seed, -2, 2), random_between(&seed, -2, 2), random_between(&seed, -2, 2));
+        throw_particle(world, i, random_between(&seed, -2, 2), random_between(&seed, -2, 2),
+                       random_between(&seed, -2, 2));
 }
 
 static skein_handle add_wind(skein_world *world, const wind *w, const char *on) {
@@ -197,7 +198,8 @@ static void the_wind_keeps_to_its_bodies(void **state) {
             for (size_t b = 0; b < MOST_BODIES; b++) {
                 sheets[b] = *make_sheet(6 + (uint32_t)b, 30, cuts[b]);
                 first[b] = add_sheet(world, &sheets[b], names[b]);
-                if (on & 1 << b) snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", list[0] ? "," : "", names[b]);
+                if (on & 1 << b)
+                    snprintf(list + strlen(list), sizeof list - strlen(list), "%s%s", list[0] ? "," : "", names[b]);
             }
             shake(world, 7);
             if (on) add_wind(world, &breeze, list);
@@ -260,8 +262,8 @@ static void nothing_is_gained_from_still_air(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(each_particle_gets_the_formula),      cmocka_unit_test(every_method_has_the_same_wind),
-        cmocka_unit_test(the_wind_keeps_to_its_bodies),        cmocka_unit_test(still_air_slows_as_its_equation_says),
+        cmocka_unit_test(each_particle_gets_the_formula),   cmocka_unit_test(every_method_has_the_same_wind),
+        cmocka_unit_test(the_wind_keeps_to_its_bodies),     cmocka_unit_test(still_air_slows_as_its_equation_says),
         cmocka_unit_test(nothing_is_gained_from_still_air),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -157,16 +157,15 @@ static skein_world *cube_on(const char *method, size_t i, bool formula) {
     add_gravity(world);
     OK(world, skein_collider_add(world, formula ? "formula" : terrains[i].kind,
                                  formula ? terrains[i].formula : terrains[i].own, NULL));
-    OK(world,
-       skein_body_add(world, "lattice", NULL,
-                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
-                                     SKEIN_VEC3("position", terrains[i].at.x, terrains[i].at.y, terrains[i].at.z),
-                                     SKEIN_VEC3("rotation", 0, 0, terrains[i].turn), SKEIN_REAL("mass", 10),
-                                     SKEIN_REAL("structural.stiffness", 1000), SKEIN_REAL("structural.damping", 5),
-                                     SKEIN_REAL("shear.stiffness", 500), SKEIN_REAL("shear.damping", 2.5),
-                                     SKEIN_REAL("bending.stiffness", 250), SKEIN_REAL("bending.damping", 1.2),
-                                     SKEIN_REAL("struts", 1)),
-                      NULL));
+    OK(world, skein_body_add(world, "lattice", NULL,
+                             SKEIN_SETTINGS(SKEIN_VEC3("grid", 3, 3, 3), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
+                                            SKEIN_VEC3("position", terrains[i].at.x, terrains[i].at.y, terrains[i].at.z),
+                                            SKEIN_VEC3("rotation", 0, 0, terrains[i].turn), SKEIN_REAL("mass", 10),
+                                            SKEIN_REAL("structural.stiffness", 1000),
+                                            SKEIN_REAL("structural.damping", 5), SKEIN_REAL("shear.stiffness", 500),
+                                            SKEIN_REAL("shear.damping", 2.5), SKEIN_REAL("bending.stiffness", 250),
+                                            SKEIN_REAL("bending.damping", 1.2), SKEIN_REAL("struts", 1)),
+                             NULL));
     return world;
 }
 
@@ -240,11 +239,10 @@ static void bounces_know_the_surfaces_speed(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++)
         for (size_t s = 0; s < COUNT(surfaces); s++) {
             skein_world *world = new_world(all_methods[m], 1);
-            OK(world,
-               skein_collider_add(world, "formula",
-                                  SKEIN_SETTINGS(SKEIN_TEXT("surface", surfaces[s]), SKEIN_REAL("restitution", 1),
-                                                 SKEIN_REAL("parameters.u", u), SKEIN_REAL("friction", 0)),
-                                  NULL));
+            OK(world, skein_collider_add(world, "formula",
+                                         SKEIN_SETTINGS(SKEIN_TEXT("surface", surfaces[s]), SKEIN_REAL("restitution", 1),
+                                                        SKEIN_REAL("parameters.u", u), SKEIN_REAL("friction", 0)),
+                                         NULL));
             uint32_t p = add_moving(world, 1, 0.1, 0, 0, -v, 1, 0);
             steps(world, 100, 1e-3);
             vec3 after = velocity_of(world, p);
@@ -347,7 +345,9 @@ static void awkward_places_are_finite(void **state) {
 static void guards_are_counted(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 1);
-    OK(world, skein_collider_add(world, "formula", SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_REAL("recovery", 1e6)), NULL));
+    OK(world,
+       skein_collider_add(world, "formula",
+                          SKEIN_SETTINGS(SKEIN_TEXT("surface", "length(p) - 0.5"), SKEIN_REAL("recovery", 1e6)), NULL));
     add_particle(world, 1, 0, 0, 0);
     add_particle(world, 1, 0, 2, 0);
     add_particle(world, 0, 0, 0, 0);

@@ -10,7 +10,8 @@ static skein_handle add_plate(skein_world *world, const char *kind, double thick
     skein_handle handle;
     bool box = !strcmp(kind, "box");
     skein_setting settings[] = {SKEIN_VEC3("rotation", 0, 30, 0), SKEIN_REAL("thickness", thickness),
-                                SKEIN_VEC3("motion.velocity", 0, velocity, 0), SKEIN_VEC3("size", 60, 0.001, 60), SKEIN_END};
+                                SKEIN_VEC3("motion.velocity", 0, velocity, 0), SKEIN_VEC3("size", 60, 0.001, 60),
+                                SKEIN_END};
     if (!box) settings[3] = (skein_setting)SKEIN_TEXT("surface", "abs(p.y) - 0.0005");
     OK(world, skein_collider_add(world, kind, settings, &handle));
     return handle;
@@ -36,7 +37,8 @@ static void nothing_passes_a_plate(void **state) {
                 OK(world, skein_collider_pose(world, plate, &pose));
                 double above = position_of(world, 0).y - pose.position[1] - 0.0005;
                 if (!(above >= -1e-5))
-                    print_error("%s, %s at %g m/s, %g aslant, thickness %g%s: %g m above\n", all_methods[i], kind, speed, side, thickness, comes ? ", which comes" : "", above);
+                    print_error("%s, %s at %g m/s, %g aslant, thickness %g%s: %g m above\n", all_methods[i], kind,
+                                speed, side, thickness, comes ? ", which comes" : "", above);
                 assert_true(above >= -1e-5);
             }
             // it does not stick to it either: it lies on the plate, as slow along it as friction leaves it
@@ -53,8 +55,9 @@ static void nothing_passes_what_is_round(void **state) {
             double speed = n % 2 ? 20 : 400, radius = n / 2 % 2 ? 0.01 : 0.3;
             bool ball = n / 4;
             skein_world *world = new_world(all_methods[i], 5);
-            OK(world, skein_collider_add(world, ball ? "sphere" : "capsule",
-                                         SKEIN_SETTINGS(SKEIN_REAL("radius", radius), SKEIN_REAL("thickness", 0.001)), NULL));
+            OK(world,
+               skein_collider_add(world, ball ? "sphere" : "capsule",
+                                  SKEIN_SETTINGS(SKEIN_REAL("radius", radius), SKEIN_REAL("thickness", 0.001)), NULL));
             add_moving(world, 0.1, 0, 1, 0, 0, -speed, 0);
             steps(world, 6, dt);
             assert_true(fabs(position_of(world, 0).y - (radius + 0.001)) < 1e-4 || speed < 60);
@@ -73,14 +76,16 @@ static void a_shell_keeps_in_and_out(void **state) {
             bool inside = n / 2;
             skein_world *world = new_world(all_methods[i], 5);
             OK(world, skein_collider_add(world, "formula",
-                                         SKEIN_SETTINGS(SKEIN_TEXT("surface", "abs(length(p) - 0.4) - 0.0005"), SKEIN_REAL("thickness", 0.002)),
+                                         SKEIN_SETTINGS(SKEIN_TEXT("surface", "abs(length(p) - 0.4) - 0.0005"),
+                                                        SKEIN_REAL("thickness", 0.002)),
                                          NULL));
             add_moving(world, 0.1, 0.05, inside ? 0 : 0.9, -0.05, 0.1 * speed, -speed, 0);
             for (int f = 0; f < 30; f++) {
                 steps(world, 1, dt);
                 double away = length3(position_of(world, 0)) - 0.4;
                 if (!(inside ? away < -0.0005 + 1e-5 : away > 0.0005 - 1e-5))
-                    print_error("%s at %g m/s, from %s: %g m out of the shell's middle in frame %d\n", all_methods[i], speed, inside ? "inside" : "outside", away, f);
+                    print_error("%s at %g m/s, from %s: %g m out of the shell's middle in frame %d\n", all_methods[i],
+                                speed, inside ? "inside" : "outside", away, f);
                 assert_true(inside ? away < -0.0005 + 1e-5 : away > 0.0005 - 1e-5);
             }
             skein_world_destroy(world);
@@ -93,7 +98,8 @@ static void it_bounces_as_ever(void **state) {
     for (size_t i = 0; i < COUNT(all_methods); i++) {
         skein_world *world = new_world(all_methods[i], 5);
         OK(world, skein_collider_add(world, "box",
-                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 60, 0.001, 60), SKEIN_REAL("friction", 0), SKEIN_REAL("restitution", 0.5)),
+                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 60, 0.001, 60), SKEIN_REAL("friction", 0),
+                                                    SKEIN_REAL("restitution", 0.5)),
                                      NULL));
         add_moving(world, 0.1, 0, 1, 0, 50, -200, 0);
         steps(world, 1, dt);
@@ -112,19 +118,24 @@ static void what_is_beside_flies_by(void **state) {
         for (int with = 0; with < 2; with++) {
             skein_world *world = new_world(all_methods[i], 5);
             if (with)
-                OK(world, skein_collider_add(world, "box", SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 0.001, 1), SKEIN_VEC3("rotation", 10, 20, 30)), NULL));
+                OK(world,
+                   skein_collider_add(
+                       world, "box",
+                       SKEIN_SETTINGS(SKEIN_VEC3("size", 1, 0.001, 1), SKEIN_VEC3("rotation", 10, 20, 30)), NULL));
             add_moving(world, 0.1, 0.9, 2, 0.1, 3, -390, 0);
             add_moving(world, 0.1, 0.9, 2, 0.1, -3, 390, 0);
             steps(world, 10, dt);
             end[with] = position_of(world, 0);
             skein_world_destroy(world);
         }
-        if (strcmp(all_methods[i], "backward_euler")) assert_true(end[0].x == end[1].x && end[0].y == end[1].y && end[0].z == end[1].z);
+        if (strcmp(all_methods[i], "backward_euler"))
+            assert_true(end[0].x == end[1].x && end[0].y == end[1].y && end[0].z == end[1].z);
         skein_world *world = new_world(all_methods[i], 5);
-        OK(world, skein_collider_add(world, "box",
-                                     SKEIN_SETTINGS(SKEIN_VEC3("size", 2, 0.001, 0.2), SKEIN_VEC3("motion.axis", 0, 0, 1),
-                                                    SKEIN_REAL("motion.spin", 20 * PI / 180 * 300)),
-                                     NULL));
+        OK(world,
+           skein_collider_add(world, "box",
+                              SKEIN_SETTINGS(SKEIN_VEC3("size", 2, 0.001, 0.2), SKEIN_VEC3("motion.axis", 0, 0, 1),
+                                             SKEIN_REAL("motion.spin", 20 * PI / 180 * 300)),
+                              NULL));
         add_particle(world, 0.1, 0.5, 0.1, 0);
         steps(world, 1, dt); // a third of a turn: the blade was where it is
         assert_true(length3(minus(position_of(world, 0), (vec3){0.5, 0.1, 0})) > 0.1);
@@ -142,14 +153,16 @@ static void a_cloth_does_not_pass(void **state) {
             add_gravity(world);
             add_plate(world, "box", 0.002, 0);
             int side = SANITIZED ? 9 : 20;
-            OK(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1, 0), SKEIN_VEC3("rotation", tilt, 0, 0),
-                                                    SKEIN_VEC3("velocity", 0, -200, 0), SKEIN_REAL("stretch.stiffness", 100),
-                                                    SKEIN_REAL("shear.stiffness", 20)),
-                                     NULL));
+            OK(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1, 0),
+                                             SKEIN_VEC3("rotation", tilt, 0, 0), SKEIN_VEC3("velocity", 0, -200, 0),
+                                             SKEIN_REAL("stretch.stiffness", 100), SKEIN_REAL("shear.stiffness", 20)),
+                              NULL));
             for (int f = 0; f < 20; f++) {
                 steps(world, 1, dt);
-                for (uint32_t p = 0; p < skein_particle_count(world); p++) assert_true(position_of(world, p).y > 0.0005 - 1e-5);
+                for (uint32_t p = 0; p < skein_particle_count(world); p++)
+                    assert_true(position_of(world, p).y > 0.0005 - 1e-5);
             }
             skein_world_destroy(world);
         }
@@ -157,9 +170,9 @@ static void a_cloth_does_not_pass(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(nothing_passes_a_plate),      cmocka_unit_test(nothing_passes_what_is_round),
-        cmocka_unit_test(a_shell_keeps_in_and_out),    cmocka_unit_test(it_bounces_as_ever),
-        cmocka_unit_test(what_is_beside_flies_by),     cmocka_unit_test(a_cloth_does_not_pass),
+        cmocka_unit_test(nothing_passes_a_plate),   cmocka_unit_test(nothing_passes_what_is_round),
+        cmocka_unit_test(a_shell_keeps_in_and_out), cmocka_unit_test(it_bounces_as_ever),
+        cmocka_unit_test(what_is_beside_flies_by),  cmocka_unit_test(a_cloth_does_not_pass),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -11,7 +11,8 @@ static skein_world *hanging(int side, double tether) {
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 1.2, 0),
                                             SKEIN_REAL("density", 0.2), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("stretch.stiffness", 1000), SKEIN_REAL("shear.stiffness", 100),
-                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100), SKEIN_REAL("stretch.tether", tether)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 100),
+                                            SKEIN_REAL("stretch.tether", tether)),
                              NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 1.5)), NULL));

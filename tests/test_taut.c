@@ -23,7 +23,8 @@ static skein_world *world_of(int threads) {
         p[i] = radius * cos(angle), p[i + 1] = edge * at[1], p[i + 2] = radius * sin(angle);
     }
     add_and_free(world, mesh, p,
-                 SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.01, 0), SKEIN_VEC3("rotation", 3, 0, 2), SKEIN_VEC3("velocity", 0, -4, 0)));
+                 SKEIN_SETTINGS(SKEIN_VEC3("position", 0, 0.01, 0), SKEIN_VEC3("rotation", 3, 0, 2),
+                                SKEIN_VEC3("velocity", 0, -4, 0)));
     add_gravity(world);
     OK(world, skein_collider_add(world, "plane", NULL, NULL));
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.001)), NULL));
@@ -71,6 +72,7 @@ static void it_goes_on_alike(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(what_crumples_does_not_tear), cmocka_unit_test(it_goes_on_alike)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(what_crumples_does_not_tear),
+                                       cmocka_unit_test(it_goes_on_alike)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

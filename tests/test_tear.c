@@ -45,8 +45,9 @@ static size_t torn(const sheet *s) {
  * last one is stretched most, by 55 %, and those before it less and less. */
 static sheet ladder(double tear) {
     sheet s = add_sheet(world_of("xpbd", 1, 1),
-                        SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 12), SKEIN_PAIR("size", 11, 1), SKEIN_REAL("stretch.stiffness", 0),
-                                       SKEIN_REAL("shear.stiffness", 0), SKEIN_REAL("bend.rigidity", 0), SKEIN_REAL("stretch.tear", tear)));
+                        SKEIN_SETTINGS(SKEIN_PAIR("grid", 2, 12), SKEIN_PAIR("size", 11, 1),
+                                       SKEIN_REAL("stretch.stiffness", 0), SKEIN_REAL("shear.stiffness", 0),
+                                       SKEIN_REAL("bend.rigidity", 0), SKEIN_REAL("stretch.tear", tear)));
     for (size_t i = 0; i < 24; i++) {
         double k = (double)(i % 12), z = position_of(s.world, s.surface.first_particle + i).z;
         place_particle(s.world, s.surface.first_particle + i, k + k * (k + 1) / 2 / 20, 0, z);
@@ -79,8 +80,9 @@ static void the_worst_gives_way_first(void **state) {
 /* A ribbon of 1 m between two pinned ends, which part at 1 m/s. */
 static sheet ribbon(const char *method, double tear) {
     return add_sheet(world_of(method, 20, 1),
-                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 11), SKEIN_PAIR("size", 1, 0.2), SKEIN_TEXT("pins", "left edge, right edge"),
-                                    SKEIN_REAL("stretch.stiffness", 20), SKEIN_REAL("shear.stiffness", 2), SKEIN_REAL("stretch.damping", 0.1),
+                     SKEIN_SETTINGS(SKEIN_PAIR("grid", 3, 11), SKEIN_PAIR("size", 1, 0.2),
+                                    SKEIN_TEXT("pins", "left edge, right edge"), SKEIN_REAL("stretch.stiffness", 20),
+                                    SKEIN_REAL("shear.stiffness", 2), SKEIN_REAL("stretch.damping", 0.1),
                                     SKEIN_REAL("stretch.tether", INFINITY), SKEIN_REAL("stretch.tear", tear)));
 }
 
@@ -275,10 +277,14 @@ static void refusals(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(the_worst_gives_way_first), cmocka_unit_test(a_ribbon_gives_way_at_its_bound),
-        cmocka_unit_test(never_is_never),            cmocka_unit_test(the_same_bits),
-        cmocka_unit_test(a_reset_makes_whole),       cmocka_unit_test(snapshots_hold_tears),
-        cmocka_unit_test(recordings_tear_again),     cmocka_unit_test(what_is_disabled_does_not_tear),
+        cmocka_unit_test(the_worst_gives_way_first),
+        cmocka_unit_test(a_ribbon_gives_way_at_its_bound),
+        cmocka_unit_test(never_is_never),
+        cmocka_unit_test(the_same_bits),
+        cmocka_unit_test(a_reset_makes_whole),
+        cmocka_unit_test(snapshots_hold_tears),
+        cmocka_unit_test(recordings_tear_again),
+        cmocka_unit_test(what_is_disabled_does_not_tear),
         cmocka_unit_test(refusals),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

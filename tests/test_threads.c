@@ -36,8 +36,8 @@ static uint64_t hash_of_run(const char *method, int side, int substeps, int thre
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_VEC3("position", 0, 0.5, 0),
                                             SKEIN_VEC3("velocity", 0.1, -2, 0), SKEIN_TEXT("pins", "top corners"),
                                             SKEIN_REAL("stretch.stiffness", 5), SKEIN_REAL("shear.stiffness", 1),
-                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0.1), SKEIN_REAL("stretch.damping", 1e-3),
-                                            SKEIN_REAL("stretch.limit", 0.01)),
+                                            SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0.1),
+                                            SKEIN_REAL("stretch.damping", 1e-3), SKEIN_REAL("stretch.limit", 0.01)),
                              NULL));
     uint64_t seed = 17;
     for (int i = 0; i < LOOSE; i++) {

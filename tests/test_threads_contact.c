@@ -25,8 +25,10 @@ static uint64_t hash_of_run(int threads, tally *t, bool through) {
     OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2)), NULL));
     for (int l = 0; l < 2; l++)
         OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_VEC3("position", 0.02 * l, 0.22 + 0.012 * l, 0),
-                                                SKEIN_VEC3("rotation", through ? 9 * l : 0, 20 * l, 0), SKEIN_VEC3("velocity", 0, -1 - l, 0)),
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE),
+                                                SKEIN_VEC3("position", 0.02 * l, 0.22 + 0.012 * l, 0),
+                                                SKEIN_VEC3("rotation", through ? 9 * l : 0, 20 * l, 0),
+                                                SKEIN_VEC3("velocity", 0, -1 - l, 0)),
                                  NULL));
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01)), NULL));
     assert_int_equal(statistics_of(world).crossings > 0, through);
@@ -42,7 +44,8 @@ static void threads_change_no_bit(void **state) {
     setenv("SKEIN_THREADS", "always", 1);
     for (int through = 0; through < 2; through++) {
         uint64_t ought = hash_of_run(1, NULL, through);
-        for (int threads = 2; threads <= (SANITIZED ? 2 : 3); threads++) assert_true(hash_of_run(threads, NULL, through) == ought);
+        for (int threads = 2; threads <= (SANITIZED ? 2 : 3); threads++)
+            assert_true(hash_of_run(threads, NULL, through) == ought);
         tally t = {0};
         assert_true(hash_of_run(4, &t, through) == ought);
         assert_true(t.calls > 10 * STEPS); // the search is cut, or the test would prove nothing

@@ -12,14 +12,17 @@ static skein_world *folding(const double size[2], double turn, const double at[3
     assert_non_null(world);
     OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 5))));
     add_gravity(world);
-    OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_VEC3("centre", at[0], at[1], at[2])), NULL));
+    OK(world,
+       skein_collider_add(world, "sphere",
+                          SKEIN_SETTINGS(SKEIN_REAL("radius", 0.2), SKEIN_VEC3("centre", at[0], at[1], at[2])), NULL));
     for (int sheet = 0; sheet < 2; sheet++) {
         const int l = sheet * apart;
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_PAIR("size", size[0], size[1]),
-                                                SKEIN_VEC3("position", at[0] + 0.02 * l, at[1] + 0.22 + 0.012 * l, at[2]),
-                                                SKEIN_VEC3("rotation", 0, turn + 20 * l, 0), SKEIN_VEC3("velocity", 0, -1 - l, 0)),
-                                 NULL));
+        OK(world, skein_body_add(
+                      world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_PAIR("size", size[0], size[1]),
+                                     SKEIN_VEC3("position", at[0] + 0.02 * l, at[1] + 0.22 + 0.012 * l, at[2]),
+                                     SKEIN_VEC3("rotation", 0, turn + 20 * l, 0), SKEIN_VEC3("velocity", 0, -1 - l, 0)),
+                      NULL));
     }
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.012)), NULL));
     return world;
@@ -47,7 +50,7 @@ static void check_dealt(const sk_touch *touch, size_t in_round[SK_SLAB_ROUNDS]) 
         for (int r = 0; r < SK_SLAB_ROUNDS; r++) {
             for (size_t v = 0; v <= touch->skin.vertex_count; v++) of[v] = -1;
             const size_t first = (size_t)sort * SK_SLAB_CLASSES;
-            for (size_t class = first + sk_slab_round[r]; class < first + sk_slab_round[r + 1]; class++)
+            for (size_t class = first + sk_slab_round[r]; class < first + sk_slab_round[r + 1]; class ++)
                 for (size_t i = pushes->start[class]; i < pushes->start[class + 1]; i++) {
                     const uint32_t pair = pushes->dealt.data[i];
                     assert_true(pair < all && !seen[pair]);
@@ -77,7 +80,8 @@ static void what_is_pushed_together_has_no_corner_in_common(void **state) {
             looked++;
         }
         assert_true(looked > 2);
-        for (int r = 0; r < SK_SLAB_ROUNDS - 1 && c < 3; r++) assert_true(in_round[r] > 100); // a thing of millimetres has few cuts
+        for (int r = 0; r < SK_SLAB_ROUNDS - 1 && c < 3; r++)
+            assert_true(in_round[r] > 100); // a thing of millimetres has few cuts
         skein_world_destroy(world);
     }
 }

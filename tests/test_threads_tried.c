@@ -159,12 +159,9 @@ static void all_threads_can_be_had_always(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(threads_that_pay_are_taken),
-        cmocka_unit_test(threads_that_cost_are_not),
-        cmocka_unit_test(it_follows_the_machine),
-        cmocka_unit_test(it_follows_the_work),
-        cmocka_unit_test(steps_that_search_mislead_nobody),
-        cmocka_unit_test(all_threads_can_be_had_always),
+        cmocka_unit_test(threads_that_pay_are_taken),       cmocka_unit_test(threads_that_cost_are_not),
+        cmocka_unit_test(it_follows_the_machine),           cmocka_unit_test(it_follows_the_work),
+        cmocka_unit_test(steps_that_search_mislead_nobody), cmocka_unit_test(all_threads_can_be_had_always),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

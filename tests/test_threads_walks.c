@@ -66,7 +66,8 @@ static void add_body(skein_world *world, body which) {
     snprintf(pins, sizeof pins, "%u, %u", t.number[0], t.number[SIDE - 1]);
     OK(world, skein_body_add(world, "cloth", &t.mesh,
                              SKEIN_SETTINGS(SKEIN_TEXT("pins", pins), SKEIN_VEC3("position", 0, 0.6, 0.2),
-                                            SKEIN_REAL("stretch.stiffness", 5), SKEIN_TEXT("bend.by", "springs"), SKEIN_REAL("bend.stiffness", 0.1)),
+                                            SKEIN_REAL("stretch.stiffness", 5), SKEIN_TEXT("bend.by", "springs"),
+                                            SKEIN_REAL("bend.stiffness", 0.1)),
                              NULL));
 }
 
@@ -150,7 +151,8 @@ static void groups_that_go_together_share_no_particle(void **state) {
                 }
                 together += sweep->ahead[g] > 1;
             }
-            assert_true(sweep->slab_start || !strcmp(batch->label, "span") || !strcmp(batch->label, "aggregate")); // it walks; spans lead too far
+            assert_true(sweep->slab_start || !strcmp(batch->label, "span") ||
+                        !strcmp(batch->label, "aggregate")); // it walks; spans lead too far
             elements += sweep->element_count, groups += sweep->group_count;
         }
     }
@@ -225,8 +227,8 @@ static void groups_are_the_loop(void **state) {
     for (size_t i = 0; i < count; i++) {
         sk_vec4 now = world->particles.vector[SK_X][world->particles.slot_of[i]];
         if (!(x[i].x == now.x && x[i].y == now.y && x[i].z == now.z))
-            fail_msg("particle %zu: %.9g %.9g %.9g, not %.9g %.9g %.9g", i, (double)now.x, (double)now.y,
-                     (double)now.z, (double)x[i].x, (double)x[i].y, (double)x[i].z);
+            fail_msg("particle %zu: %.9g %.9g %.9g, not %.9g %.9g %.9g", i, (double)now.x, (double)now.y, (double)now.z,
+                     (double)x[i].x, (double)x[i].y, (double)x[i].z);
     }
     free(v);
     free(x);

@@ -70,13 +70,14 @@ static size_t crossings_of(const skein_world *world, const triangles *all) {
 /* ---- Worlds ---------------------------------------------------------------------------------------- */
 
 static void add_touching(skein_world *world, double thickness, double friction) {
-    OK(world, skein_force_add(world, "contact",
-                              SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness), SKEIN_REAL("friction", friction)), NULL));
+    OK(world,
+       skein_force_add(world, "contact",
+                       SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness), SKEIN_REAL("friction", friction)), NULL));
 }
 
 static void add_ground(skein_world *world) {
-    OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004), SKEIN_REAL("friction", 0.4)),
-                                 NULL));
+    OK(world, skein_collider_add(world, "plane",
+                                 SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004), SKEIN_REAL("friction", 0.4)), NULL));
 }
 
 static void add_sheet(skein_world *world, int side, double size, vec3 at, vec3 turned) {
@@ -140,12 +141,16 @@ static void nobody_is_pressed_into_the_ground(void **state) {
         add_gravity(world);
         const double up = ground == 2 ? 1.5 : 0;
         if (ground == 3)
-            OK(world, skein_collider_add(world, "sphere", SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_REAL("friction", 0.5),
-                                                                         SKEIN_VEC3("centre", 0, -0.32, 0)), NULL));
+            OK(world, skein_collider_add(world, "sphere",
+                                         SKEIN_SETTINGS(SKEIN_REAL("radius", 0.3), SKEIN_REAL("friction", 0.5),
+                                                        SKEIN_VEC3("centre", 0, -0.32, 0)),
+                                         NULL));
         else
-            OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_VEC3("normal", ground == 1 ? 0.4 : 0, 1, 0),
-                                                                        SKEIN_VEC3("motion.velocity", 0, up, 0),
-                                                                        SKEIN_REAL("friction", 0.5)), NULL));
+            OK(world,
+               skein_collider_add(world, "plane",
+                                  SKEIN_SETTINGS(SKEIN_VEC3("normal", ground == 1 ? 0.4 : 0, 1, 0),
+                                                 SKEIN_VEC3("motion.velocity", 0, up, 0), SKEIN_REAL("friction", 0.5)),
+                                  NULL));
         add_sheet(world, SANITIZED ? 14 : 24, 0.6, (vec3){0, 0.5, 0}, (vec3){86, 10, 0});
         add_touching(world, 0.005, 0.3);
         double deepest = 0;
@@ -222,7 +227,8 @@ static void layers_stay_in_their_order(void **state) {
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
     const double thickness = 0.01;
     add_touching(world, thickness, 0.5);
-    for (int l = 0; l < LAYERS; l++) add_sheet(world, SIDE, 0.6, (vec3){0.01 * l, 0.1 + 0.1 * l, 0}, (vec3){0, 7.0 * l, 0});
+    for (int l = 0; l < LAYERS; l++)
+        add_sheet(world, SIDE, 0.6, (vec3){0.01 * l, 0.1 + 0.1 * l, 0}, (vec3){0, 7.0 * l, 0});
     triangles all = triangles_of(world);
     for (int frame = 0; frame < (SANITIZED ? 15 : 90); frame++) {
         steps(world, 1, step_length);
@@ -231,7 +237,8 @@ static void layers_stay_in_their_order(void **state) {
     double below = 0;
     for (int l = 0; l < LAYERS && !SANITIZED; l++) {
         double mean = 0;
-        for (int i = 0; i < SIDE * SIDE; i++) mean += position_of(world, (size_t)(l * SIDE * SIDE + i)).y / (SIDE * SIDE);
+        for (int i = 0; i < SIDE * SIDE; i++)
+            mean += position_of(world, (size_t)(l * SIDE * SIDE + i)).y / (SIDE * SIDE);
         if (l) assert_near(mean - below, thickness, 0.3 * thickness);
         below = mean;
     }
@@ -240,14 +247,15 @@ static void layers_stay_in_their_order(void **state) {
 }
 
 static void add_cube(skein_world *world, vec3 at, double turned) {
-    OK(world, skein_body_add(world, "lattice", NULL,
-                             SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
-                                            SKEIN_VEC3("position", at.x, at.y, at.z), SKEIN_VEC3("rotation", 0, turned, 0),
-                                            SKEIN_REAL("mass", 10), SKEIN_REAL("struts", 1),
-                                            SKEIN_REAL("structural.stiffness", 1000), SKEIN_REAL("structural.damping", 5),
-                                            SKEIN_REAL("shear.stiffness", 500), SKEIN_REAL("shear.damping", 2.5),
-                                            SKEIN_REAL("bending.stiffness", 250), SKEIN_REAL("bending.damping", 1.2)),
-                             NULL));
+    OK(world,
+       skein_body_add(world, "lattice", NULL,
+                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("size", 0.5, 0.5, 0.5),
+                                     SKEIN_VEC3("position", at.x, at.y, at.z), SKEIN_VEC3("rotation", 0, turned, 0),
+                                     SKEIN_REAL("mass", 10), SKEIN_REAL("struts", 1),
+                                     SKEIN_REAL("structural.stiffness", 1000), SKEIN_REAL("structural.damping", 5),
+                                     SKEIN_REAL("shear.stiffness", 500), SKEIN_REAL("shear.damping", 2.5),
+                                     SKEIN_REAL("bending.stiffness", 250), SKEIN_REAL("bending.damping", 1.2)),
+                      NULL));
 }
 
 static double mean_height(const skein_world *world, size_t first, size_t count) {
@@ -288,7 +296,8 @@ static void a_rope_lies_on_a_cloth(void **state) {
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 2)), NULL));
     add_touching(world, 0.01, 0.8);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 13, 13), SKEIN_TEXT("pins", "border")), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 13, 13), SKEIN_TEXT("pins", "border")), NULL));
     OK(world, skein_body_add(world, "rope", NULL,
                              SKEIN_SETTINGS(SKEIN_REAL("count", 21), SKEIN_VEC3("from", -0.3, 0.1, -0.1),
                                             SKEIN_VEC3("to", 0.3, 0.14, 0.13), SKEIN_REAL("density", 0.05)),
@@ -414,7 +423,8 @@ static void fast_things_do_not_pass(void **state) {
     (void)state;
     skein_world *world = new_world("xpbd", 10);
     add_touching(world, 0.005, 0.3);
-    OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "border")), NULL));
+    OK(world, skein_body_add(world, "cloth", NULL,
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "border")), NULL));
     OK(world, skein_body_add(world, "cloth", NULL,
                              SKEIN_SETTINGS(SKEIN_PAIR("grid", 7, 7), SKEIN_PAIR("size", 0.4, 0.4),
                                             SKEIN_VEC3("position", 0.02, 0.6, 0.01), SKEIN_VEC3("rotation", 5, 9, 0),
@@ -436,15 +446,17 @@ static void it_acts_on_whom_it_names(void **state) {
     for (int named = 0; named < 2; named++) {
         skein_world *world = new_world("xpbd", 10);
         add_gravity(world);
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "border"), SKEIN_TEXT("name", "a")),
-                                 NULL));
+        OK(world,
+           skein_body_add(
+               world, "cloth", NULL,
+               SKEIN_SETTINGS(SKEIN_PAIR("grid", 9, 9), SKEIN_TEXT("pins", "border"), SKEIN_TEXT("name", "a")), NULL));
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 5, 5), SKEIN_PAIR("size", 0.3, 0.3),
                                                 SKEIN_VEC3("position", 0, 0.1, 0), SKEIN_TEXT("name", "b")),
                                  NULL));
         OK(world, skein_force_add(world, "contact",
-                                  SKEIN_SETTINGS(SKEIN_TEXT("on", named ? "a, b" : "b"), SKEIN_REAL("thickness", 0.01)), NULL));
+                                  SKEIN_SETTINGS(SKEIN_TEXT("on", named ? "a, b" : "b"), SKEIN_REAL("thickness", 0.01)),
+                                  NULL));
         steps(world, 60, step_length);
         bool above = mean_height(world, 81, 25) > -0.3;
         assert_true(above == named);
@@ -484,10 +496,12 @@ static void a_pile_that_thickens_is_led_apart(void **state) {
             }
             assert_int_equal(statistics_of(world).crossings, 0);
         }
-        assert_true(most < 2 * (PILE - 1) * fastest); // 2: gaps that are led apart one after the other share what is missing unevenly
+        assert_true(most < 2 * (PILE - 1) *
+                               fastest); // 2: gaps that are led apart one after the other share what is missing unevenly
         assert_true(highest < 0.004 + (PILE - 1) * after + 0.001);
         for (size_t i = 1; i < PILE; i++)
-            assert_near(mean_height(world, i * OF_ONE, OF_ONE) - mean_height(world, (i - 1) * OF_ONE, OF_ONE), after, 5e-4);
+            assert_near(mean_height(world, i * OF_ONE, OF_ONE) - mean_height(world, (i - 1) * OF_ONE, OF_ONE), after,
+                        5e-4);
         assert_under(statistics_of(world).kinetic_energy, 1e-5);
         // a smaller one is so at once, and what has come to lie is not led back
         OK(world, skein_set(world, rule, "thickness", skein_number(before)));
@@ -500,7 +514,8 @@ static void a_pile_that_thickens_is_led_apart(void **state) {
 /* Adds sheets that are an eighth of the thickness above each other. */
 static void add_close_sheets(skein_world *world, double thickness, int first, int count) {
     for (int i = first; i < first + count; i++)
-        add_sheet(world, PILE_SIDE - i % 2, 0.6, (vec3){0.003 * i, 0.004 + 0.125 * i * thickness, 0.002 * i}, (vec3){0, 0, 0});
+        add_sheet(world, PILE_SIDE - i % 2, 0.6, (vec3){0.003 * i, 0.004 + 0.125 * i * thickness, 0.002 * i},
+                  (vec3){0, 0, 0});
 }
 
 /* What begins nearer than its thickness lets it grow, and is not thrown: when a world begins, or begins anew, a body joins it or a rule is
@@ -574,16 +589,24 @@ static void giving_up_is_told(void **state) {
 
 int main(void) {
     const struct CMUnitTest tests[] = {
-        cmocka_unit_test(crossings_are_counted),        cmocka_unit_test(a_heap_has_no_crossings),
-        cmocka_unit_test(a_heap_comes_to_rest),         cmocka_unit_test(a_thin_heap_has_no_crossings),
+        cmocka_unit_test(crossings_are_counted),
+        cmocka_unit_test(a_heap_has_no_crossings),
+        cmocka_unit_test(a_heap_comes_to_rest),
+        cmocka_unit_test(a_thin_heap_has_no_crossings),
         cmocka_unit_test(nobody_is_pressed_into_the_ground),
-        cmocka_unit_test(layers_stay_in_their_order),   cmocka_unit_test(a_cube_rests_on_a_cube),
-        cmocka_unit_test(a_rope_lies_on_a_cloth),       cmocka_unit_test(bits_are_the_same),
-        cmocka_unit_test(it_remembers_nothing),         cmocka_unit_test(an_impact_remembers_nothing),
-                cmocka_unit_test(what_touches_nothing_is_free),
-        cmocka_unit_test(a_moving_frame_changes_nothing), cmocka_unit_test(fast_things_do_not_pass),
-        cmocka_unit_test(it_acts_on_whom_it_names),       cmocka_unit_test(giving_up_is_told),
-        cmocka_unit_test(a_pile_that_thickens_is_led_apart), cmocka_unit_test(what_begins_too_near_is_led_apart),
+        cmocka_unit_test(layers_stay_in_their_order),
+        cmocka_unit_test(a_cube_rests_on_a_cube),
+        cmocka_unit_test(a_rope_lies_on_a_cloth),
+        cmocka_unit_test(bits_are_the_same),
+        cmocka_unit_test(it_remembers_nothing),
+        cmocka_unit_test(an_impact_remembers_nothing),
+        cmocka_unit_test(what_touches_nothing_is_free),
+        cmocka_unit_test(a_moving_frame_changes_nothing),
+        cmocka_unit_test(fast_things_do_not_pass),
+        cmocka_unit_test(it_acts_on_whom_it_names),
+        cmocka_unit_test(giving_up_is_told),
+        cmocka_unit_test(a_pile_that_thickens_is_led_apart),
+        cmocka_unit_test(what_begins_too_near_is_led_apart),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

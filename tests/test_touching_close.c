@@ -5,10 +5,11 @@
 static const double step_length = 1.0 / 60, thickness = 0.005;
 
 static void add_sheet(skein_world *world, uint32_t side, const char *pins, double turn, vec3 at) {
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins), SKEIN_VEC3("rotation", turn, 0, 0),
-                                            SKEIN_VEC3("position", at.x, at.y, at.z)),
-                             NULL));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins),
+                                     SKEIN_VEC3("rotation", turn, 0, 0), SKEIN_VEC3("position", at.x, at.y, at.z)),
+                      NULL));
 }
 
 static skein_world *new_close_world(const char *method) {
@@ -46,7 +47,9 @@ static void what_begins_in_one_place_comes_apart(void **state) {
                 }
                 assert_true(most < 2.2 && statistics_of(world).kinetic_energy < 5e-3);
                 const size_t first = 9 * 9, count = (size_t)other * other;
-                if (!upright) assert_float_equal(mean_height(world, first, count) - mean_height(world, 0, first), thickness, 0.0005);
+                if (!upright)
+                    assert_float_equal(mean_height(world, first, count) - mean_height(world, 0, first), thickness,
+                                       0.0005);
                 crossing_free(&all);
                 skein_world_destroy(world);
             }
@@ -64,13 +67,14 @@ static void what_is_pinned_too_near_stays_whole(void **state) {
     for (size_t k = 0; k < COUNT(curtains); k++) {
         skein_world *world = new_close_world(curtains[k].method);
         OK(world, skein_force_add(world, "surface_wind", SKEIN_SETTINGS(SKEIN_VEC3("velocity", 0, 0, 3)), NULL));
-        for (int i = 0; i < 3; i++) add_sheet(world, 8 + 2 * (uint32_t)i, "top edge", 90, (vec3){0, 0, curtains[k].gap * i});
+        for (int i = 0; i < 3; i++)
+            add_sheet(world, 8 + 2 * (uint32_t)i, "top edge", 90, (vec3){0, 0, curtains[k].gap * i});
         for (int frame = 0; frame < curtains[k].frames; frame++) {
             steps(world, 1, step_length);
             const skein_statistics s = statistics_of(world);
             if (s.crossings || !(s.kinetic_energy < 1.5) || !(s.max_stretch < 1))
-                fail_msg("%s, %g m, frame %d: %zu crossings, %g J, stretched by %g", curtains[k].method, curtains[k].gap, frame, s.crossings,
-                         s.kinetic_energy, s.max_stretch);
+                fail_msg("%s, %g m, frame %d: %zu crossings, %g J, stretched by %g", curtains[k].method,
+                         curtains[k].gap, frame, s.crossings, s.kinetic_energy, s.max_stretch);
         }
         skein_world_destroy(world);
     }

@@ -5,17 +5,19 @@ static const double dt = 1.0 / 60;
 
 static skein_handle add_sheet(skein_world *world, const char *name, double y, const char *pins) {
     skein_handle body;
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 6, 6), SKEIN_PAIR("size", 0.3, 0.3),
-                                            SKEIN_VEC3("position", 0.011, y, 0.007), SKEIN_TEXT("pins", pins)),
-                             &body));
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_TEXT("name", name), SKEIN_PAIR("grid", 6, 6), SKEIN_PAIR("size", 0.3, 0.3),
+                                     SKEIN_VEC3("position", 0.011, y, 0.007), SKEIN_TEXT("pins", pins)),
+                      &body));
     return body;
 }
 
 static skein_world *two_sheets(const char *ignore, double apart) {
     skein_world *world = new_world("xpbd", 10);
     add_gravity(world);
-    OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", ignore)), NULL));
+    OK(world, skein_force_add(world, "contact",
+                              SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", ignore)), NULL));
     add_sheet(world, "low", 0, "box -1 -1 -1 1 1 1");
     add_sheet(world, "high", apart, "");
     return world;
@@ -42,7 +44,8 @@ static void contacts_are_as_the_places_say(void **state) {
                 sum += list[i].weight[c];
             }
             assert_under(sum, 1e-5);
-            assert_near(way[0] * list[i].normal[0] + way[1] * list[i].normal[1] + way[2] * list[i].normal[2], list[i].gap, 1e-5);
+            assert_near(way[0] * list[i].normal[0] + way[1] * list[i].normal[1] + way[2] * list[i].normal[2],
+                        list[i].gap, 1e-5);
             assert_near(list[i].gap, apart[far], 1e-5);
             assert_near(fabs(list[i].normal[1]), 1, 1e-5);
             assert_near(list[i].thickness, 0.01, 1e-6);
@@ -101,7 +104,8 @@ static void who_is_ignored_is_not_met(void **state) {
     OK(alone, skein_force_add(alone, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01)), NULL));
     add_sheet(alone, "high", 0.03, "");
     steps(alone, 40, dt), steps(world, 40, dt);
-    for (size_t p = 0; p < 36; p++) assert_under(length3(minus(position_of(alone, p), position_of(world, 36 + p))), 1e-5);
+    for (size_t p = 0; p < 36; p++)
+        assert_under(length3(minus(position_of(alone, p), position_of(world, 36 + p))), 1e-5);
     skein_world_destroy(alone), skein_world_destroy(world);
 }
 

@@ -17,7 +17,7 @@ typedef struct sheet {
     double uneven; /* how far vertices are off the grid, in cells */
     bool mixed;    /* numbers by chance */
     enum { TWO_CORNERS, FOUR_CORNERS, TOP } hangs;
-    double most;   /* stretch in any frame */
+    double most; /* stretch in any frame */
 } sheet;
 
 static uint32_t seed;
@@ -55,7 +55,8 @@ static skein_world *hung(const sheet *s, int threads) {
     for (uint32_t r = 0; r + 1 < SIDE; r++)
         for (uint32_t c = 0; c + (s->form != TUBE) < SIDE; c++) {
             const uint32_t next = (c + 1) % SIDE;
-            const uint32_t q[] = {number[r * SIDE + c], number[(r + 1) * SIDE + c], number[(r + 1) * SIDE + next], number[r * SIDE + next]};
+            const uint32_t q[] = {number[r * SIDE + c], number[(r + 1) * SIDE + c], number[(r + 1) * SIDE + next],
+                                  number[r * SIDE + next]};
             const bool other = s->cut == BY_CHANCE ? by_chance() < 0.5 : s->cut == IN_TURN && (r + c) % 2;
             for (uint32_t f = 0; f < 2; f++, size[faces++] = 3)
                 for (uint32_t k = 0; k < 3; k++) corner[corners++] = q[(other + 2 * f + k) % 4];
@@ -64,13 +65,18 @@ static skein_world *hung(const sheet *s, int threads) {
     for (uint32_t c = 0; c < SIDE; c++) {
         if (s->hangs != TOP && c && c + 1 < SIDE) continue;
         snprintf(pins + strlen(pins), sizeof pins - strlen(pins), "%u ", number[c]);
-        if (s->hangs == FOUR_CORNERS) snprintf(pins + strlen(pins), sizeof pins - strlen(pins), "%u ", number[(SIDE - 1) * SIDE + c]);
+        if (s->hangs == FOUR_CORNERS)
+            snprintf(pins + strlen(pins), sizeof pins - strlen(pins), "%u ", number[(SIDE - 1) * SIDE + c]);
     }
     skein_world_desc desc = skein_default_world_desc();
     desc.thread_count = threads;
     skein_world *world = skein_world_create(&desc, NULL);
-    const skein_mesh mesh = {.positions = positions[0], .vertex_count = SIDE * SIDE, .face_sizes = size, .face_count = faces,
-                             .face_vertices = corner, .face_vertex_count = corners};
+    const skein_mesh mesh = {.positions = positions[0],
+                             .vertex_count = SIDE * SIDE,
+                             .face_sizes = size,
+                             .face_count = faces,
+                             .face_vertices = corner,
+                             .face_vertex_count = corners};
     OK(world, skein_body_add(world, "cloth", &mesh, SKEIN_SETTINGS(SKEIN_TEXT("pins", pins)), NULL));
     add_gravity(world);
     OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
@@ -123,6 +129,7 @@ static void threads_change_no_bit(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(sheets_of_all_kinds_are_firm), cmocka_unit_test(threads_change_no_bit)};
+    const struct CMUnitTest tests[] = {cmocka_unit_test(sheets_of_all_kinds_are_firm),
+                                       cmocka_unit_test(threads_change_no_bit)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,9 @@ static skein_world *hang(const char *method, bool irregular, bool contact) {
     char pins[32];
     snprintf(pins, sizeof pins, "0 %d", irregular ? (SIDE - 1) * 7919 % (SIDE * SIDE) : SIDE - 1);
     if (irregular) add_irregular(world, SIDE, SKEIN_SETTINGS(SKEIN_TEXT("pins", pins)));
-    else OK(world, skein_body_add(world, "cloth", NULL, SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins)), NULL));
+    else
+        OK(world, skein_body_add(world, "cloth", NULL,
+                                 SKEIN_SETTINGS(SKEIN_PAIR("grid", SIDE, SIDE), SKEIN_TEXT("pins", pins)), NULL));
     steps(world, 480, 1.0 / 60);
     return world;
 }

@@ -24,12 +24,14 @@ static skein_world *world_with_contact(const char *method, int substeps, double 
     return world_on(1, method, substeps, recovery);
 }
 
-static void add_sheet(skein_world *world, int side, double size, const double at[3], const double turned[3], const char *pins) {
-    OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_PAIR("size", size, size),
-                                            SKEIN_VEC3("position", at[0], at[1], at[2]),
-                                            SKEIN_VEC3("rotation", turned[0], turned[1], turned[2]), SKEIN_TEXT("pins", pins)),
-                             NULL));
+static void add_sheet(skein_world *world, int side, double size, const double at[3], const double turned[3],
+                      const char *pins) {
+    OK(world,
+       skein_body_add(world, "cloth", NULL,
+                      SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_PAIR("size", size, size),
+                                     SKEIN_VEC3("position", at[0], at[1], at[2]),
+                                     SKEIN_VEC3("rotation", turned[0], turned[1], turned[2]), SKEIN_TEXT("pins", pins)),
+                      NULL));
 }
 
 /* The corner of one sheet is through another one. */
@@ -42,10 +44,11 @@ static void corner_through(skein_world *world) {
 static void cubes_in_each_other(skein_world *world) {
     const double at[MOST_BODIES][3] = {{0, 0.3, 0}, {0.23, 0.47, 0.21}};
     for (int k = 0; k < MOST_BODIES; k++)
-        OK(world, skein_body_add(world, "lattice", NULL,
-                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 6 - k, 6 - k, 6 - k), SKEIN_VEC3("size", 0.3, 0.3, 0.3),
-                                                SKEIN_VEC3("position", at[k][0], at[k][1], at[k][2])),
-                                 NULL));
+        OK(world,
+           skein_body_add(world, "lattice", NULL,
+                          SKEIN_SETTINGS(SKEIN_VEC3("grid", 6 - k, 6 - k, 6 - k), SKEIN_VEC3("size", 0.3, 0.3, 0.3),
+                                         SKEIN_VEC3("position", at[k][0], at[k][1], at[k][2])),
+                          NULL));
 }
 
 /* A hanging sheet whose folds are in each other. */
@@ -104,7 +107,8 @@ static void they_gain_no_speed(void **state) {
         cubes_in_each_other(world);
         assert_int_equal(crossings_after(world, 60), 0);
         double fastest = 0;
-        for (size_t i = 0; i < skein_particle_count(world); i++) fastest = fmax(fastest, length3(velocity_of(world, i)));
+        for (size_t i = 0; i < skein_particle_count(world); i++)
+            fastest = fmax(fastest, length3(velocity_of(world, i)));
         if (fastest > 0.2) fail_msg("%s: %g m/s", methods[m], fastest);
         skein_world_destroy(world);
     }
@@ -156,16 +160,19 @@ static skein_world *pressed_in_one_plane(void) {
     OK(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 12))));
     OK(world, skein_force_add(world, "gravity", NULL, NULL));
     for (int b = 0; b < 3; b++)
-        OK(world, skein_body_add(world, "cloth", NULL,
-                                 SKEIN_SETTINGS(SKEIN_TEXT("name", names[b]), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.4, 0.4),
-                                                SKEIN_VEC3("position", 0.03 * b, 0.05 * b, 0.01 * b),
-                                                SKEIN_TEXT("pins", b == 1 ? "top corners" : ""),
-                                                SKEIN_REAL("stretch.stiffness", 100), SKEIN_REAL("shear.stiffness", 30),
-                                                SKEIN_REAL("bend.stiffness", 0)),
-                                 NULL));
-    OK(world, skein_force_add(world, "contact",
-                              SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", "a:b, b:c, a:c, c, b")), NULL));
-    OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0.002, 0, 0), SKEIN_TEXT("on", "a, c")), NULL));
+        OK(world,
+           skein_body_add(
+               world, "cloth", NULL,
+               SKEIN_SETTINGS(SKEIN_TEXT("name", names[b]), SKEIN_PAIR("grid", 9, 9), SKEIN_PAIR("size", 0.4, 0.4),
+                              SKEIN_VEC3("position", 0.03 * b, 0.05 * b, 0.01 * b),
+                              SKEIN_TEXT("pins", b == 1 ? "top corners" : ""), SKEIN_REAL("stretch.stiffness", 100),
+                              SKEIN_REAL("shear.stiffness", 30), SKEIN_REAL("bend.stiffness", 0)),
+               NULL));
+    OK(world, skein_force_add(
+                  world, "contact",
+                  SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.01), SKEIN_TEXT("ignore", "a:b, b:c, a:c, c, b")), NULL));
+    OK(world, skein_force_add(world, "wind", SKEIN_SETTINGS(SKEIN_VEC3("force", 0.002, 0, 0), SKEIN_TEXT("on", "a, c")),
+                              NULL));
     OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.02)), NULL));
     return world;
 }

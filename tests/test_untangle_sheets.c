@@ -15,7 +15,8 @@ static skein_world *begin_world(int number, bool falls) {
     OK(world, skein_force_add(world, "contact", NULL, NULL));
     if (falls) {
         add_gravity(world);
-        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_REAL("offset", -0.3)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_REAL("offset", -0.3)), NULL));
     }
     return world;
 }
@@ -40,7 +41,8 @@ static bool come_apart(skein_world *world, int number, bool falls, double most) 
     const double energy = statistics_of(world).kinetic_energy;
     if (apart && !falls && energy > most) fail_msg("pair %d: %g J where nothing moved", number, energy);
     if (apart) steps(world, AFTER, 1.0 / 60);
-    if (apart && crossings_of(world) > 0) fail_msg("pair %d: %zu crossings, once it was apart", number, crossings_of(world));
+    if (apart && crossings_of(world) > 0)
+        fail_msg("pair %d: %zu crossings, once it was apart", number, crossings_of(world));
     skein_world_destroy(world);
     return apart;
 }
@@ -52,10 +54,12 @@ static void sheets_leave_solids(void **state) {
     for (int number = 0; number < PAIRS; number++) {
         skein_world *world = begin_world(number, number % 2);
         const int side = (int)some(3, 9), threads = (int)some(10, 30);
-        const double x = some(-0.1, 0.1), y = 0.5 + some(-0.1, 0.1), pitch = some(-60, 60), yaw = some(-60, 60), mass = some(0.2, 3);
+        const double x = some(-0.1, 0.1), y = 0.5 + some(-0.1, 0.1), pitch = some(-60, 60), yaw = some(-60, 60),
+                     mass = some(0.2, 3);
         OK(world, skein_body_add(world, "lattice", NULL,
-                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", side, side, side), SKEIN_VEC3("size", 0.3, 0.3, 0.3), SKEIN_REAL("mass", mass),
-                                                SKEIN_VEC3("position", x, y, 0), SKEIN_VEC3("rotation", pitch, yaw, 0)),
+                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", side, side, side), SKEIN_VEC3("size", 0.3, 0.3, 0.3),
+                                                SKEIN_REAL("mass", mass), SKEIN_VEC3("position", x, y, 0),
+                                                SKEIN_VEC3("rotation", pitch, yaw, 0)),
                                  NULL));
         add_sheet(world, threads, 1, 0, number % 4 < 2 ? "corners" : "");
         stay += !come_apart(world, number, number % 2, 0.3);
@@ -79,10 +83,12 @@ static void sheets_leave_each_other(void **state) {
 }
 
 static void add_thrown(skein_world *world, int columns, int rows, double size, const char *fabric) {
-    const double x = some(-0.4, 0.4), y = 0.2 + some(-0.3, 0.3), z = some(-0.3, 0.3), pitch = some(0, 360), yaw = some(0, 360), roll = some(0, 360);
+    const double x = some(-0.4, 0.4), y = 0.2 + some(-0.3, 0.3), z = some(-0.3, 0.3), pitch = some(0, 360),
+                 yaw = some(0, 360), roll = some(0, 360);
     const double u = some(-1, 1), v = some(-1, 1), w = some(-1, 1);
     OK(world, skein_body_add(world, "cloth", NULL,
-                             SKEIN_SETTINGS(SKEIN_PAIR("grid", columns, rows), SKEIN_PAIR("size", size * (columns - 1) / (rows - 1), size),
+                             SKEIN_SETTINGS(SKEIN_PAIR("grid", columns, rows),
+                                            SKEIN_PAIR("size", size * (columns - 1) / (rows - 1), size),
                                             SKEIN_VEC3("position", x, y, z), SKEIN_VEC3("velocity", u, v, w),
                                             SKEIN_VEC3("rotation", pitch, yaw, roll), SKEIN_TEXT("fabric", fabric)),
                              NULL));

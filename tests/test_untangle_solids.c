@@ -31,14 +31,16 @@ static int come_apart(const char *method, int substeps, double thickness, double
     OK(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", thickness)), NULL));
     if (falls) {
         add_gravity(world);
-        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_REAL("offset", -0.1)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5), SKEIN_REAL("offset", -0.1)), NULL));
     }
     add_some_cube(world, 0.4);
     add_some_cube(world, 0.4 + 0.35 * (1 - some(0.1, 0.7)));
     assert_true(crossings_of(world) > 0);
     int frames = 0;
     for (; frames < MOST && crossings_of(world) > 0; frames++) steps(world, 1, 1.0 / 60);
-    if (crossings_of(world) > 0) fail_msg("pair %d, %s: %zu crossings after %d frames", number, method, crossings_of(world), frames);
+    if (crossings_of(world) > 0)
+        fail_msg("pair %d, %s: %zu crossings after %d frames", number, method, crossings_of(world), frames);
     const double energy = statistics_of(world).kinetic_energy;
     if (!falls && energy > most) fail_msg("pair %d, %s: %g J where nothing moved", number, method, energy);
     for (int f = 0; f < AFTER; f++) steps(world, 1, 1.0 / 60);
@@ -82,9 +84,7 @@ static void so_they_do_under_other_methods(void **state) {
 static void what_cannot_come_apart_does_not_fly(void **state) {
     (void)state;
     enum { TURN = 120, BACK = 60, AFTER = 60 };
-    static const struct {
-        double x, z, yaw;
-    } poses[] = {{0, 0, 0}, {-0.002, -0.047, 24}};
+    static const struct { double x, z, yaw; } poses[] = {{0, 0, 0}, {-0.002, -0.047, 24}};
     for (size_t pose = 0; pose < COUNT(poses); pose++) {
         skein_world *world = skein_world_create(NULL, NULL);
         assert_non_null(world);
@@ -95,11 +95,13 @@ static void what_cannot_come_apart_does_not_fly(void **state) {
         OK(world, skein_collider_add(world, "plane", NULL, NULL));
         OK(world, skein_body_add(world, "lattice", NULL,
                                  SKEIN_SETTINGS(SKEIN_VEC3("size", 0.4, 0.4, 0.4), SKEIN_VEC3("position", 0, 0.21, 0),
-                                                SKEIN_REAL("structural.stiffness", 2000)), NULL));
+                                                SKEIN_REAL("structural.stiffness", 2000)),
+                                 NULL));
         OK(world, skein_body_add(world, "cloth", NULL,
                                  SKEIN_SETTINGS(SKEIN_PAIR("grid", 31, 31), SKEIN_PAIR("size", 0.8, 0.8),
                                                 SKEIN_VEC3("position", poses[pose].x, 0.5, poses[pose].z),
-                                                SKEIN_VEC3("rotation", 0, poses[pose].yaw, 0)), NULL));
+                                                SKEIN_VEC3("rotation", 0, poses[pose].yaw, 0)),
+                                 NULL));
         steps(world, TURN, 1.0 / 60);
         OK(world, skein_set(world, contact, "enabled", skein_number(0)));
         steps(world, BACK, 1.0 / 60);
@@ -124,21 +126,33 @@ static void what_is_stuck_comes_apart(void **state) {
         int substeps;
         double aside, above, yaw;
         int side, count;
-    } cases[] = {{"xpbd", 10, 0.03, 0.8, 0, 8, 2}, {"xpbd", 10, 0.03, 0.3, 0, 8, 2}, {"xpbd", 10, 0, 0.5, 0, 8, 2}, {"xpbd", 10, 0.1, 0.5, 20, 5, 2},
-                 {"xpbd", 10, 0.1, 0.5, 0, 6, 4},  {"xpbd", 10, 0.2, 0.4, 0, 5, 4},  {"xpbd", 10, 0, 0, 0, 8, 2},   {"xpbd", 10, 0, 0.8, 0, 6, 3},
-                 {"pbd", 10, 0, 0, 0, 5, 3},       {"symplectic_euler", 40, 0, 0, 0, 6, 2},                         {"backward_euler", 4, 0, 0.4, 0, 4, 2}};
+    } cases[] = {{"xpbd", 10, 0.03, 0.8, 0, 8, 2},
+                 {"xpbd", 10, 0.03, 0.3, 0, 8, 2},
+                 {"xpbd", 10, 0, 0.5, 0, 8, 2},
+                 {"xpbd", 10, 0.1, 0.5, 20, 5, 2},
+                 {"xpbd", 10, 0.1, 0.5, 0, 6, 4},
+                 {"xpbd", 10, 0.2, 0.4, 0, 5, 4},
+                 {"xpbd", 10, 0, 0, 0, 8, 2},
+                 {"xpbd", 10, 0, 0.8, 0, 6, 3},
+                 {"pbd", 10, 0, 0, 0, 5, 3},
+                 {"symplectic_euler", 40, 0, 0, 0, 6, 2},
+                 {"backward_euler", 4, 0, 0.4, 0, 4, 2}};
     for (size_t c = 0; c < COUNT(cases); c++) {
         skein_world *world = new_world(cases[c].method, cases[c].substeps);
         add_gravity(world);
         OK(world, skein_force_add(world, "contact", NULL, NULL));
-        OK(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.003), SKEIN_REAL("friction", 0.5)), NULL));
+        OK(world, skein_collider_add(world, "plane",
+                                     SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.003), SKEIN_REAL("friction", 0.5)), NULL));
         for (int b = 0; b < cases[c].count; b++)
-            OK(world, skein_body_add(world, "lattice", NULL,
-                                     SKEIN_SETTINGS(SKEIN_VEC3("grid", cases[c].side, cases[c].side, cases[c].side),
-                                                    SKEIN_VEC3("position", b % 2 * cases[c].aside, 0.51 + b * cases[c].above,
-                                                               cases[c].yaw > 0 ? 0.1 * b : cases[c].aside > 0 && cases[c].count > 2 ? 0.05 * (b % 3) : 0),
-                                                    SKEIN_VEC3("rotation", 0, b * cases[c].yaw, 0)),
-                                     NULL));
+            OK(world,
+               skein_body_add(world, "lattice", NULL,
+                              SKEIN_SETTINGS(SKEIN_VEC3("grid", cases[c].side, cases[c].side, cases[c].side),
+                                             SKEIN_VEC3("position", b % 2 * cases[c].aside, 0.51 + b * cases[c].above,
+                                                        cases[c].yaw > 0                           ? 0.1 * b
+                                                        : cases[c].aside > 0 && cases[c].count > 2 ? 0.05 * (b % 3)
+                                                                                                   : 0),
+                                             SKEIN_VEC3("rotation", 0, b * cases[c].yaw, 0)),
+                              NULL));
         steps(world, 240, 1.0 / 60);
         if (crossings_of(world)) fail_msg("case %zu: %zu crossings after 4 s", c, crossings_of(world));
         steps(world, 240, 1.0 / 60); // until who was led out of a heap has rolled off
@@ -157,8 +171,10 @@ static void what_is_stacked_too_closely_stands(void **state) {
         const char *method;
         int substeps, count, side, first_is_upper;
         double overlap, aside; // m, of cubes of 1 m
-    } cases[] = {{"xpbd", 10, 2, 5, 0, 0.1, 0}, {"xpbd", 10, 2, 4, 1, 0.4, 0},   {"xpbd", 10, 2, 5, 0, 0.1, 0.1},             {"xpbd", 10, 3, 4, 1, 0.15, 0},
-                 {"pbd", 10, 2, 4, 0, 0.2, 0.1}, {"symplectic_euler", 40, 2, 4, 0, 0.1, 0.1}, {"backward_euler", 4, 2, 4, 0, 0.1, 0}};
+    } cases[] = {{"xpbd", 10, 2, 5, 0, 0.1, 0},         {"xpbd", 10, 2, 4, 1, 0.4, 0},
+                 {"xpbd", 10, 2, 5, 0, 0.1, 0.1},       {"xpbd", 10, 3, 4, 1, 0.15, 0},
+                 {"pbd", 10, 2, 4, 0, 0.2, 0.1},        {"symplectic_euler", 40, 2, 4, 0, 0.1, 0.1},
+                 {"backward_euler", 4, 2, 4, 0, 0.1, 0}};
     for (size_t c = 0; c < COUNT(cases); c++) {
         skein_world *world = new_world(cases[c].method, cases[c].substeps);
         add_gravity(world);
@@ -168,7 +184,8 @@ static void what_is_stacked_too_closely_stands(void **state) {
             const int floor = cases[c].first_is_upper ? cases[c].count - 1 - b : b;
             OK(world, skein_body_add(world, "lattice", NULL,
                                      SKEIN_SETTINGS(SKEIN_VEC3("grid", cases[c].side, cases[c].side, cases[c].side),
-                                                    SKEIN_VEC3("position", floor * cases[c].aside, 0.505 + floor * (1 - cases[c].overlap), 0)),
+                                                    SKEIN_VEC3("position", floor * cases[c].aside,
+                                                               0.505 + floor * (1 - cases[c].overlap), 0)),
                                      NULL));
         }
         double most = 0, highest = 0;
@@ -198,13 +215,15 @@ static void who_stands_on_another_comes_to_rest(void **state) {
                 for (int b = 0; b < 2; b++)
                     OK(world, skein_body_add(world, "lattice", NULL,
                                              SKEIN_SETTINGS(SKEIN_VEC3("grid", side, side, side),
-                                                            SKEIN_VEC3("position", 0.1 * aside * b, b == order ? 0.505 : 1.505, 0.05 * aside * b)),
+                                                            SKEIN_VEC3("position", 0.1 * aside * b,
+                                                                       b == order ? 0.505 : 1.505, 0.05 * aside * b)),
                                              NULL));
                 assert_int_equal(statistics_of(world).crossings, 0); // who touches is not in the other
                 steps(world, 180, 1.0 / 60);
                 assert_int_equal(crossings_of(world), 0);
                 const double energy = statistics_of(world).kinetic_energy;
-                if (!(energy < 0.05)) fail_msg("grid of %d, order %d, aside %d: %g J after 3 s", side, order, aside, energy);
+                if (!(energy < 0.05))
+                    fail_msg("grid of %d, order %d, aside %d: %g J after 3 s", side, order, aside, energy);
                 skein_world_destroy(world);
             }
 }
@@ -225,12 +244,17 @@ static void what_is_held_does_not_gain_energy(void **state) {
         add_irregular_sack(world, 11, 22, half, SKEIN_SETTINGS(SKEIN_VEC3("position", 0.05, 0.32, 0.02)));
         OK(world, skein_body_add(world, "lattice", NULL,
                                  SKEIN_SETTINGS(SKEIN_VEC3("grid", 6, 5, 6), SKEIN_VEC3("size", 1, 0.6, 1),
-                                                SKEIN_VEC3("position", 0.05, 0.32 + poses[pose].above, 0.02), SKEIN_VEC3("rotation", 0, poses[pose].yaw, 0)),
+                                                SKEIN_VEC3("position", 0.05, 0.32 + poses[pose].above, 0.02),
+                                                SKEIN_VEC3("rotation", 0, poses[pose].yaw, 0)),
                                  NULL));
         OK(world, skein_body_add(world, "lattice", NULL,
-                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 10, 4, 6), SKEIN_VEC3("size", 1.2, 0.25, 0.6), SKEIN_VEC3("position", 0.1, 1.05, 0)), NULL));
+                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 10, 4, 6), SKEIN_VEC3("size", 1.2, 0.25, 0.6),
+                                                SKEIN_VEC3("position", 0.1, 1.05, 0)),
+                                 NULL));
         OK(world, skein_body_add(world, "lattice", NULL,
-                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 4, 8, 4), SKEIN_VEC3("size", 0.3, 0.8, 0.3), SKEIN_VEC3("position", 0, 1.42, 0.02)), NULL));
+                                 SKEIN_SETTINGS(SKEIN_VEC3("grid", 4, 8, 4), SKEIN_VEC3("size", 0.3, 0.8, 0.3),
+                                                SKEIN_VEC3("position", 0, 1.42, 0.02)),
+                                 NULL));
         steps(world, 300, 1.0 / 60);
         const double energy = statistics_of(world).kinetic_energy;
         if (!(energy < 60)) fail_msg("pose %zu: %g J after 5 s", pose, energy);
@@ -249,11 +273,14 @@ static void a_sheet_in_a_face_is_outside(void **state) {
             OK(world, skein_collider_add(world, "plane", NULL, NULL));
             for (int b = 0; b < 2; b++) {
                 if (b == order)
-                    OK(world, skein_body_add(world, "lattice", NULL,
-                                             SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("position", 0, 0.505, 0)), NULL));
+                    OK(world,
+                       skein_body_add(world, "lattice", NULL,
+                                      SKEIN_SETTINGS(SKEIN_VEC3("grid", 5, 5, 5), SKEIN_VEC3("position", 0, 0.505, 0)),
+                                      NULL));
                 else
                     OK(world, skein_body_add(world, "cloth", NULL,
-                                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 13, 13), SKEIN_PAIR("size", 0.75, 0.75), SKEIN_VEC3("position", 0, 1.005, 0),
+                                             SKEIN_SETTINGS(SKEIN_PAIR("grid", 13, 13), SKEIN_PAIR("size", 0.75, 0.75),
+                                                            SKEIN_VEC3("position", 0, 1.005, 0),
                                                             SKEIN_VEC3("rotation", over ? 180 : 0, 0, 0)),
                                              NULL));
             }
@@ -269,10 +296,14 @@ static void a_sheet_in_a_face_is_outside(void **state) {
 }
 
 int main(void) {
-    const struct CMUnitTest tests[] = {cmocka_unit_test(cubes_come_apart), cmocka_unit_test(fine_cubes_come_apart),
-                                       cmocka_unit_test(so_they_do_under_other_methods), cmocka_unit_test(what_cannot_come_apart_does_not_fly),
-                                       cmocka_unit_test(what_is_stuck_comes_apart),  cmocka_unit_test(who_stands_on_another_comes_to_rest),
-                                       cmocka_unit_test(a_sheet_in_a_face_is_outside), cmocka_unit_test(what_is_stacked_too_closely_stands),
+    const struct CMUnitTest tests[] = {cmocka_unit_test(cubes_come_apart),
+                                       cmocka_unit_test(fine_cubes_come_apart),
+                                       cmocka_unit_test(so_they_do_under_other_methods),
+                                       cmocka_unit_test(what_cannot_come_apart_does_not_fly),
+                                       cmocka_unit_test(what_is_stuck_comes_apart),
+                                       cmocka_unit_test(who_stands_on_another_comes_to_rest),
+                                       cmocka_unit_test(a_sheet_in_a_face_is_outside),
+                                       cmocka_unit_test(what_is_stacked_too_closely_stands),
                                        cmocka_unit_test(what_is_held_does_not_gain_energy)};
     return cmocka_run_group_tests(tests, NULL, NULL);
 }

@@ -14,7 +14,8 @@ static const viewer_theme themes[] = {VIEWER_DARK, VIEWER_LIGHT};
 static double light_of(const double rgb[3]) {
     static const double weight[3] = {0.2126, 0.7152, 0.0722};
     double light = 0;
-    for (int k = 0; k < 3; k++) light += weight[k] * (rgb[k] <= 0.03928 ? rgb[k] / 12.92 : pow((rgb[k] + 0.055) / 1.055, 2.4));
+    for (int k = 0; k < 3; k++)
+        light += weight[k] * (rgb[k] <= 0.03928 ? rgb[k] / 12.92 : pow((rgb[k] + 0.055) / 1.055, 2.4));
     return light;
 }
 

@@ -15,8 +15,7 @@ static double takes(int level, double whole, double fixed) {
 static void levels_cost_ever_less(void **state) {
     (void)state;
     assert_true(viewer_detail_at(0).scale == 1 && viewer_detail_at(0).sampled);
-    for (int level = 1; level < VIEWER_DETAILS; level++)
-        assert_true(takes(level, 100, 0) < takes(level - 1, 100, 0));
+    for (int level = 1; level < VIEWER_DETAILS; level++) assert_true(takes(level, 100, 0) < takes(level - 1, 100, 0));
     assert_true(viewer_detail_at(-1).scale == 1);
     assert_true(viewer_detail_at(99).scale == viewer_detail_at(VIEWER_DETAILS - 1).scale);
 }
@@ -59,7 +58,8 @@ static void says_which_of_both_is_slow(void **state) {
     viewer_pace steps = {.real = 1, .simulated = 0.6, .worked = 0.96, .drawn = 0.9, .steps = 240, .pictures = 20};
     assert_int_equal(viewer_pace_judge(&steps), VIEWER_SLOW_STEPS);
     viewer_slowness_text(VIEWER_SLOW_STEPS, &steps, text, sizeof text);
-    assert_non_null(strstr(text, "the steps are slow: it goes at 60 % of real time; a step takes 4 ms and may take 2.5"));
+    assert_non_null(
+        strstr(text, "the steps are slow: it goes at 60 % of real time; a step takes 4 ms and may take 2.5"));
     // few pictures, in time
     viewer_pace drawing = {.real = 2, .simulated = 2, .worked = 0.4, .drawn = 1.8, .steps = 800, .pictures = 10};
     assert_int_equal(viewer_pace_judge(&drawing), VIEWER_SLOW_DRAWING);

@@ -550,8 +550,9 @@ static void solves_by_keys(void **state) {
         expect("log solve ");
         const char *said = strstr(screen.line, "stretch before: C ");
         assert_non_null(said);
-        int count = sscanf(said, "stretch before: C %lf; derivatives %lf %lf %lf %lf %lf %lf; at (%lf, %lf, %lf) (%lf, %lf, %lf)",
-                           &value, &d[0], &d[1], &d[2], &d[3], &d[4], &d[5], &a[0], &a[1], &a[2], &b[0], &b[1], &b[2]);
+        int count = sscanf(
+            said, "stretch before: C %lf; derivatives %lf %lf %lf %lf %lf %lf; at (%lf, %lf, %lf) (%lf, %lf, %lf)",
+            &value, &d[0], &d[1], &d[2], &d[3], &d[4], &d[5], &a[0], &a[1], &a[2], &b[0], &b[1], &b[2]);
         assert_int_equal(count, 13);
         length = distance(a, b);
         assert_true(fabs(value - (length - 1)) < 1e-4);
@@ -673,8 +674,10 @@ static void leads_where_nothing_has_a_velocity(void **state) {
     pixel_of((const double[]){2.75, 0, 0}, &x, &y);
     press_key("space");
     listen_from_here();
-    snprintf(words, sizeof words, "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mousemove %.0f %.0f sleep 0.05 "
-                                  "mousemove %.0f %.0f", x, y, x + 10, y - 20, x + 20, y - 60);
+    snprintf(words, sizeof words,
+             "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mousemove %.0f %.0f sleep 0.05 "
+             "mousemove %.0f %.0f",
+             x, y, x + 10, y - 20, x + 20, y - 60);
     tool(words);
     expect("picked ");
     assert_int_equal(sscanf(screen.line, "picked %d", &picked), 1);
@@ -801,8 +804,16 @@ static bool with_card; /* a real one */
 
 /* The picture of a flock after some frames, in a file of that name. */
 static void shoot_flock(const char *device, const char *name) {
-    const char *const arguments[] = {SKEIN_SOURCE_DIR "/scenes/birds.json", "--size", "480x270", "--samples", "1", "--paused",
-                                     "--no-panels", "--device", device, NULL};
+    const char *const arguments[] = {SKEIN_SOURCE_DIR "/scenes/birds.json",
+                                     "--size",
+                                     "480x270",
+                                     "--samples",
+                                     "1",
+                                     "--paused",
+                                     "--no-panels",
+                                     "--device",
+                                     device,
+                                     NULL};
     tool("mousemove 900 700"); // a pointer in the picture would hunt them
     open_window(arguments);
     expect("opened ");
@@ -868,8 +879,7 @@ static void refuses_bad_arguments(void **state) {
     (void)state;
     assert_says(2, "", "skein view: --size 12: expected two whole numbers from 64 to 16384, as in 1280x720\n", "view",
                 "--size", "12");
-    assert_says(2, "", "skein view: --unfocused often: expected scene, pause or play\n", "view", "--unfocused",
-                "often");
+    assert_says(2, "", "skein view: --unfocused often: expected scene, pause or play\n", "view", "--unfocused", "often");
     assert_says(2, "", "skein view: --scale big: expected a number from 0.5 to 8\n", "view", "--scale", "big");
     assert_says(2, "", "skein view: no/such.json: cannot read: No such file or directory\n", "view", "no/such.json");
     outcome help = SKEIN("view", "--help");

@@ -39,7 +39,8 @@ static const struct {
     {"potential", ", 'energy': 'k * p.y', 'parameters': { 'k': 2 }"},
     {"cache", ", 'on': 'b', 'file': 'led.pc2'"},
 };
-static const char constraint_formula[] = ", 'particles': [[0, 1]], 'constraint': 'length(p0 - p1) - L', 'parameters': { 'L': 1 }";
+static const char constraint_formula[] =
+    ", 'particles': [[0, 1]], 'constraint': 'length(p0 - p1) - L', 'parameters': { 'L': 1 }";
 static const char surface_formula[] = ", 'surface': 'p.y + R', 'parameters': { 'R': 1 }";
 
 static const char *needs_of(const skein_kind *kind) {
@@ -108,10 +109,13 @@ static const char *text_for(const skein_kind *kind, const skein_field *field) {
 /* A lattice "b" of eight particles, two of them held, that such an object acts on; or the object alone, if it is a body. */
 static void write_scene_with(const skein_kind *kind, const char *path) {
     static const char *const lists[] = {"bodies", "constraints", "forces", "colliders", "motions"};
-    char text[2048], object[600], floor[300] = "", base[] = "{ 'type': 'lattice', 'name': 'b', 'grid': [2, 2, 2], 'pins': '0 1' }";
+    char text[2048], object[600], floor[300] = "",
+                                  base[] = "{ 'type': 'lattice', 'name': 'b', 'grid': [2, 2, 2], 'pins': '0 1' }";
     snprintf(object, sizeof object, "{ 'type': '%s'%s }", kind->name, needs_of(kind));
     if (kind->category == SKEIN_MOTION)
-        snprintf(floor, sizeof floor, "'colliders': [ { 'type': 'mesh', 'name': 'floor', 'mesh': '%s/meshes/ball.obj' } ], ", SKEIN_SOURCE_DIR);
+        snprintf(floor, sizeof floor,
+                 "'colliders': [ { 'type': 'mesh', 'name': 'floor', 'mesh': '%s/meshes/ball.obj' } ], ",
+                 SKEIN_SOURCE_DIR);
     const char *method = kind->category == SKEIN_METHOD ? kind->name : "xpbd";
     if (kind->category == SKEIN_BODY)
         snprintf(text, sizeof text, "{ 'name': '%s', 'method': { 'type': 'xpbd' }, 'bodies': [ %s ] }", kind->name,
@@ -174,7 +178,9 @@ static void value_here(const opened *o, const skein_kind *kind, const skein_fiel
         const render_view *view = io_scene_view(o->scene), none = render_view_default();
         value = plain_value(field, view ? view : &none);
     } else if (kind->category == SKEIN_SCENE) value = plain_value(field, io_scene_get(o->scene));
-    else assert_int_equal(skein_get(o->world, skein_object_at(o->world, kind->category, 0), field->name, &value), SKEIN_OK);
+    else
+        assert_int_equal(skein_get(o->world, skein_object_at(o->world, kind->category, 0), field->name, &value),
+                         SKEIN_OK);
     skein_value_text(field, &value, text, 600);
 }
 
@@ -236,8 +242,8 @@ static void handle(const control *c, const double box[4], int component, int tur
             press(chosen[0] + 0.3 * chosen[2], chosen[1] + 0.5 * chosen[3], slowly);
         break;
     default:
-        drag_number(c->name, box, component, number_count(c->field), is_whole(c->field) ? 0.12 + 0.06 * turn : shares[turn],
-                    slowly);
+        drag_number(c->name, box, component, number_count(c->field),
+                    is_whole(c->field) ? 0.12 + 0.06 * turn : shares[turn], slowly);
     }
 }
 
@@ -357,8 +363,8 @@ static int compare_saved(const char *path, const skein_kind *kind, const control
         const char *end = value;
         // paths become absolute
         if (controls[i].field->type == SKEIN_FIELD_TEXT && strchr(value, '/')) end = strrchr(value, '/') + 1;
-        const char *told = strrchr(controls[i].value, '/') && end != value ? strrchr(controls[i].value, '/') + 1
-                                                                          : controls[i].value;
+        const char *told =
+            strrchr(controls[i].value, '/') && end != value ? strrchr(controls[i].value, '/') + 1 : controls[i].value;
         // what nobody set goes with the fabric that was chosen
         bool goes_along = !controls[i].told && skein_field_find(kind, "fabric", NULL);
         if (!strcmp(end, told) || goes_along) continue;
@@ -539,8 +545,9 @@ static int begin(void **state) {
     open_screen();
     write_files();
     write_scene_with(skein_kind_at(SKEIN_BODY, 0), in_folder("first.json"));
-    const char *const arguments[] = {in_folder("first.json"), "--size", "400x2600", "--scale", "1", "--samples", "1",
-                                     "--paused", "--allow-path", SKEIN_SOURCE_DIR "/meshes", NULL};
+    const char *const arguments[] = {
+        in_folder("first.json"),    "--size", "400x2600", "--scale", "1", "--samples", "1", "--paused", "--allow-path",
+        SKEIN_SOURCE_DIR "/meshes", NULL};
     open_window(arguments);
     screen.seen = 0; // so small a scene may be there before the window
     expect("opened ");
@@ -558,10 +565,10 @@ static int end(void **state) {
 int main(int argc, char **argv) {
     all_of_them = argc > 1 && !strcmp(argv[1], "all");
     const struct CMUnitTest sitting[] = {
-        cmocka_unit_test(controls_of_bodies),    cmocka_unit_test(controls_of_constraints),
-        cmocka_unit_test(controls_of_forces),    cmocka_unit_test(controls_of_colliders),
-        cmocka_unit_test(controls_of_motions),   cmocka_unit_test(controls_of_methods),
-        cmocka_unit_test(controls_of_the_view),  cmocka_unit_test(controls_of_the_scene),
+        cmocka_unit_test(controls_of_bodies),   cmocka_unit_test(controls_of_constraints),
+        cmocka_unit_test(controls_of_forces),   cmocka_unit_test(controls_of_colliders),
+        cmocka_unit_test(controls_of_motions),  cmocka_unit_test(controls_of_methods),
+        cmocka_unit_test(controls_of_the_view), cmocka_unit_test(controls_of_the_scene),
     };
     if (!can_open_screen()) return 0;
     return cmocka_run_group_tests(sitting, begin, end);

@@ -30,8 +30,7 @@ static void close_window(void) {
 }
 
 static void open_with(const char *path, const char *compare) {
-    const char *arguments[16] = {path,        "--size", "1000x1100", "--scale", "1",
-                                 "--samples", "1",      "--paused",  NULL};
+    const char *arguments[16] = {path, "--size", "1000x1100", "--scale", "1", "--samples", "1", "--paused", NULL};
     if (compare) arguments[8] = "--compare", arguments[9] = compare;
     open_window(arguments);
     screen.seen = 0;
@@ -654,11 +653,9 @@ static int leave(void **state) {
 
 int main(void) {
     const struct CMUnitTest sitting[] = {
-        SITTING(moves_a_body),           SITTING(turns_and_sizes_a_body),
-        SITTING(moves_rules_that_run),   SITTING(moves_planes_and_ropes),
-        SITTING(works_beside_other_tools), SITTING(paints_pins),
-        SITTING(gives_the_hawk_back),      SITTING(makes_a_parameter),
-        SITTING(cuts_a_sheet),
+        SITTING(moves_a_body),           SITTING(turns_and_sizes_a_body),   SITTING(moves_rules_that_run),
+        SITTING(moves_planes_and_ropes), SITTING(works_beside_other_tools), SITTING(paints_pins),
+        SITTING(gives_the_hawk_back),    SITTING(makes_a_parameter),        SITTING(cuts_a_sheet),
     };
     if (!can_open_screen()) return 0;
     if (getenv("SKEIN_TEST_ONLY")) cmocka_set_test_filter(getenv("SKEIN_TEST_ONLY"));

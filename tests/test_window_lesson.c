@@ -87,8 +87,7 @@ static told_look heard(const char *begin) {
     for (int i = 0; i < l.derivatives / 3; i++) {
         at = strchr(at, '(');
         assert_non_null(at);
-        assert_int_equal(
-            sscanf(at, "(%lf, %lf, %lf)", &l.place[3 * i], &l.place[3 * i + 1], &l.place[3 * i + 2]), 3);
+        assert_int_equal(sscanf(at, "(%lf, %lf, %lf)", &l.place[3 * i], &l.place[3 * i + 1], &l.place[3 * i + 2]), 3);
         at++;
     }
     return l;
@@ -166,13 +165,14 @@ static void a_long_note_wraps(void **state) {
 /* findings/formula_loose.json, and a constraint of four: however it was made. */
 static void any_constraint_is_told(void **state) {
     (void)state;
-    open_scene("loose.json",
-               "{ 'advance': 'key', 'frames': 3, 'step': 1, 'method': { 'type': 'pbd', 'substeps': 1, 'inertia': false },"
-               "  'bodies': [ { 'type': 'flock', 'name': 'points', 'count': 4, 'spread': [1, 1, 1], 'speed': 0 } ],"
-               "  'constraints': [ { 'type': 'formula', 'constraint': 'length(p0-p1)-L', 'parameters': { 'L': 0.5 },"
-               "                     'stiffness': 'infinite', 'particles': [[0, 1]] },"
-               "                   { 'type': 'volume', 'name': 'inside', 'particles': [[0, 1, 2, 3]] } ] }",
-               NULL);
+    open_scene(
+        "loose.json",
+        "{ 'advance': 'key', 'frames': 3, 'step': 1, 'method': { 'type': 'pbd', 'substeps': 1, 'inertia': false },"
+        "  'bodies': [ { 'type': 'flock', 'name': 'points', 'count': 4, 'spread': [1, 1, 1], 'speed': 0 } ],"
+        "  'constraints': [ { 'type': 'formula', 'constraint': 'length(p0-p1)-L', 'parameters': { 'L': 0.5 },"
+        "                     'stiffness': 'infinite', 'particles': [[0, 1]] },"
+        "                   { 'type': 'volume', 'name': 'inside', 'particles': [[0, 1, 2, 3]] } ] }",
+        NULL);
     told_look before, after;
     listen_from_here();
     tool("key Return");
@@ -180,7 +180,8 @@ static void any_constraint_is_told(void **state) {
     assert_int_equal(before.derivatives, 12);
     for (int k = 0; k < 3; k++) {
         double sum = 0, most = 0;
-        for (int i = 0; i < 4; i++) sum += before.derivative[3 * i + k], most = fmax(most, fabs(before.derivative[3 * i + k]));
+        for (int i = 0; i < 4; i++)
+            sum += before.derivative[3 * i + k], most = fmax(most, fabs(before.derivative[3 * i + k]));
         assert_true(most > 0 && fabs(sum) < 1e-4 * most); // moving all alike changes no volume
     }
     before = heard("log solve 1 formula before"), after = heard("log solve 1 formula after");
@@ -263,8 +264,8 @@ static void the_tape_is_gone_through(void **state) {
         assert_int_equal(number, n);
         const char *at = strstr(screen.line, " value=");
         assert_non_null(at);
-        assert_int_equal(sscanf(at, " value=%lf derivatives %lf %lf %lf %lf %lf %lf", &value, &d[0], &d[1], &d[2], &d[3],
-                                &d[4], &d[5]),
+        assert_int_equal(sscanf(at, " value=%lf derivatives %lf %lf %lf %lf %lf %lf", &value, &d[0], &d[1], &d[2],
+                                &d[3], &d[4], &d[5]),
                          7);
         // the first is a difference of coordinates: its derivatives are 1, -1 and 0
         if (n == 1) {
@@ -353,8 +354,8 @@ static void lead(const double at[3], double dx, double dy, double to[3]) {
     pixel_of(at, &x, &y);
     listen_from_here();
     snprintf(words, sizeof words,
-             "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f", x, y,
-             x + 0.3 * dx, y + 0.3 * dy, x + dx, y + dy);
+             "mousemove %.0f %.0f sleep 0.1 mousedown 1 sleep 0.1 mousemove %.0f %.0f sleep 0.05 mousemove %.0f %.0f",
+             x, y, x + 0.3 * dx, y + 0.3 * dy, x + dx, y + dy);
     tool(words);
     expect("picked 1 ");
     ask_state();
@@ -405,14 +406,15 @@ static void a_ball_of_the_running_spring_follows(void **state) {
 /* The same with a soft spring, under every method by its key. */
 static void a_ball_follows_under_every_method(void **state) {
     (void)state;
-    open_scene("soft.json",
-               "{ 'name': 'soft', 'view': { 'surface': false, 'particles': 'all', 'particle_radius': 0.3 },"
-               "  'method': { 'type': 'xpbd', 'substeps': 20 },"
-               "  'bodies': [ { 'type': 'rope', 'count': 2, 'from': [-2, 0, 0], 'to': [2, 0, 0], 'density': 0.5,"
-               "    'stretch': { 'stiffness': 0, 'tether': 'infinite' } } ], 'forces': [ { 'type': 'drag', 'rate': 2 } ],"
-               "  'constraints': [ { 'type': 'formula', 'constraint': 'length(p0 - p1) - 4', 'stiffness': 50,"
-               "    'damping': 2, 'particles': [[0, 1]] } ] }",
-               (const char *const[]){"--paused", "--no-panels", NULL});
+    open_scene(
+        "soft.json",
+        "{ 'name': 'soft', 'view': { 'surface': false, 'particles': 'all', 'particle_radius': 0.3 },"
+        "  'method': { 'type': 'xpbd', 'substeps': 20 },"
+        "  'bodies': [ { 'type': 'rope', 'count': 2, 'from': [-2, 0, 0], 'to': [2, 0, 0], 'density': 0.5,"
+        "    'stretch': { 'stiffness': 0, 'tether': 'infinite' } } ], 'forces': [ { 'type': 'drag', 'rate': 2 } ],"
+        "  'constraints': [ { 'type': 'formula', 'constraint': 'length(p0 - p1) - 4', 'stiffness': 50,"
+        "    'damping': 2, 'particles': [[0, 1]] } ] }",
+        (const char *const[]){"--paused", "--no-panels", NULL});
     left = 0;
     for (int m = 0; m < 9; m++) {
         char key[8], at[64];

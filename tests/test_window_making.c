@@ -82,8 +82,7 @@ static void close_window(void) {
 }
 
 static void open_scene(const char *path) {
-    const char *const arguments[] = {path,        "--size", "700x1500", "--scale", "1",
-                                     "--samples", "1",      "--paused", NULL};
+    const char *const arguments[] = {path, "--size", "700x1500", "--scale", "1", "--samples", "1", "--paused", NULL};
     open_window(arguments);
     screen.seen = 0;
     expect("opened ");
@@ -114,8 +113,9 @@ static skein_world *world_of(const char *path) {
 static void drops_two_cubes_into_the_bowl(void **state) {
     char hash[32], again[32];
     (void)state;
-    const char *const arguments[] = {"--scenes", SKEIN_SOURCE_DIR "/scenes", "--size",   "700x1500", "--scale", "1",
-                                     "--samples", "1",                      "--paused", NULL};
+    const char *const arguments[] = {
+        "--scenes", SKEIN_SOURCE_DIR "/scenes", "--size", "700x1500", "--scale", "1", "--samples", "1", "--paused",
+        NULL};
     open_window(arguments);
     screen.seen = 0;
     expect("gallery ");
@@ -247,7 +247,8 @@ static void undoes_each_entry(void **state) {
     use_key("ctrl+z", "note there is nothing to undo");
     close_window();
     skein_world *world = world_of(in_folder(name));
-    assert_int_equal(skein_get(world, skein_object_at(world, SKEIN_BODY, 0), "structural.stiffness", &stiffness), SKEIN_OK);
+    assert_int_equal(skein_get(world, skein_object_at(world, SKEIN_BODY, 0), "structural.stiffness", &stiffness),
+                     SKEIN_OK);
     assert_true(stiffness.number[0] == 3000);
     skein_world_destroy(world);
 }
@@ -356,8 +357,7 @@ static void turns_a_grid_into_a_mesh(void **state) {
         assert_int_equal(skein_positions_copy(mesh, s.particle_of_vertex[v], 1, b), SKEIN_OK);
         for (int k = 0; k < 3; k++) assert_true(fabs(a[k] - b[k]) < 1e-6);
         skein_view p = skein_position_view(grid), q = skein_position_view(mesh);
-        assert_true((p.xyzw[4 * p.slot_of[v] + 3] > 0) ==
-                    (q.xyzw[4 * q.slot_of[s.particle_of_vertex[v]] + 3] > 0));
+        assert_true((p.xyzw[4 * p.slot_of[v] + 3] > 0) == (q.xyzw[4 * q.slot_of[s.particle_of_vertex[v]] + 3] > 0));
     }
     skein_world_destroy(grid);
     skein_world_destroy(mesh);
@@ -431,8 +431,8 @@ static void remembers_scenes(void **state) {
     mkdir(in_folder("none"), 0777);
     open_scene(in_folder("one.json"));
     close_window();
-    const char *const arguments[] = {"--scenes", in_folder("none"), "--size",   "700x700", "--scale", "1",
-                                     "--samples", "1",              "--paused", NULL};
+    const char *const arguments[] = {"--scenes", in_folder("none"), "--size", "700x700",  "--scale",
+                                     "1",        "--samples",       "1",      "--paused", NULL};
     open_window(arguments);
     screen.seen = 0;
     press_button("recent one.json", "opened particles=64 ");
@@ -445,8 +445,9 @@ static void saves_both_of_two(void **state) {
     char named[sizeof one_cube + 8] = "{ 'name': 'pair'";
     strcat(named, strchr(one_cube, ','));
     write_scene(in_folder("pair.json"), named);
-    const char *const arguments[] = {in_folder("pair.json"), "--size", "700x1500", "--scale",           "1", "--samples", "1",
-                                     "--paused",             "--compare", "method.type=pbd", NULL};
+    const char *const arguments[] = {
+        in_folder("pair.json"), "--size", "700x1500", "--scale", "1", "--samples", "1", "--paused", "--compare",
+        "method.type=pbd",      NULL};
     open_window(arguments);
     screen.seen = 0;
     expect("note side by side");
@@ -504,11 +505,16 @@ static int end(void **state) {
 
 int main(void) {
     const struct CMUnitTest sitting[] = {
-        cmocka_unit_test(drops_two_cubes_into_the_bowl), cmocka_unit_test(makes_three_cubes_of_one),
-        cmocka_unit_test(makes_each_piece),              cmocka_unit_test(turns_a_grid_into_a_mesh),
-        cmocka_unit_test(puts_a_collider_elsewhere),     cmocka_unit_test(says_what_blew_up_and_what_holds_it),
-        cmocka_unit_test(remembers_scenes),              cmocka_unit_test(saves_both_of_two),
-        cmocka_unit_test(says_what_is_ignored),          cmocka_unit_test(follows_a_rolling_cube),
+        cmocka_unit_test(drops_two_cubes_into_the_bowl),
+        cmocka_unit_test(makes_three_cubes_of_one),
+        cmocka_unit_test(makes_each_piece),
+        cmocka_unit_test(turns_a_grid_into_a_mesh),
+        cmocka_unit_test(puts_a_collider_elsewhere),
+        cmocka_unit_test(says_what_blew_up_and_what_holds_it),
+        cmocka_unit_test(remembers_scenes),
+        cmocka_unit_test(saves_both_of_two),
+        cmocka_unit_test(says_what_is_ignored),
+        cmocka_unit_test(follows_a_rolling_cube),
         cmocka_unit_test(undoes_each_entry),
     };
     if (!can_open_screen()) return 0;

@@ -21,7 +21,8 @@ static void settle(void) {
 }
 
 static void open_cube(const char *const *more) {
-    const char *arguments[20] = {in_folder("cube.json"), "--size", "700x1500", "--scale", "1", "--samples", "1", "--paused"};
+    const char *arguments[20] = {
+        in_folder("cube.json"), "--size", "700x1500", "--scale", "1", "--samples", "1", "--paused"};
     for (size_t i = 0; more[i]; i++) arguments[8 + i] = more[i];
     write_scene(in_folder("cube.json"), cube);
     open_window(arguments);

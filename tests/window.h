@@ -192,10 +192,9 @@ static inline int key_code(const char *key) {
     static const struct {
         const char *name;
         int code;
-    } rows[] = {{"space", 32},  {"comma", 44}, {"period", 46},   {"Return", 257},  {"BackSpace", 259},
-                {"Right", 262}, {"Left", 263}, {"Down", 264},    {"Up", 265},      {"Prior", 266},
-                {"Next", 267},  {"Home", 268}, {"End", 269},     {"F4", 293},      {"F6", 295},
-                {"F7", 296},    {"Shift_L", 340}, {"Escape", 256}};
+    } rows[] = {{"space", 32}, {"comma", 44}, {"period", 46}, {"Return", 257}, {"BackSpace", 259}, {"Right", 262},
+                {"Left", 263}, {"Down", 264}, {"Up", 265},    {"Prior", 266},  {"Next", 267},      {"Home", 268},
+                {"End", 269},  {"F4", 293},   {"F6", 295},    {"F7", 296},     {"Shift_L", 340},   {"Escape", 256}};
     const char *last = strrchr(key, '+') ? strrchr(key, '+') + 1 : key;
     for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
         if (!strcmp(last, rows[i].name)) return rows[i].code;
@@ -479,8 +478,7 @@ static inline void ask_to_close(void) {
     Display *display = XOpenDisplay(screen.display);
     assert_non_null(display);
     Window target = (Window)strtoul(screen.window, NULL, 10);
-    send_message(display, XInternAtom(display, "WM_DELETE_WINDOW", False), target, "WM_PROTOCOLS", CurrentTime, 0, 0,
-                 0);
+    send_message(display, XInternAtom(display, "WM_DELETE_WINDOW", False), target, "WM_PROTOCOLS", CurrentTime, 0, 0, 0);
     XCloseDisplay(display);
 }
 

@@ -62,9 +62,9 @@ static void define(const char *name, const char *text, size_t length, const char
 }
 
 static void write_field(const char *prefix, const skein_field *field) {
-    static const char *const types[] = {"true or false", "a whole number",  "two whole numbers",
-                                        "three whole numbers", "a number", "two numbers",
-                                        "three numbers", "a word", "a text"};
+    static const char *const types[] = {"true or false",       "a whole number", "two whole numbers",
+                                        "three whole numbers", "a number",       "two numbers",
+                                        "three numbers",       "a word",         "a text"};
     char name[LENGTH], comment[512];
     if (strchr(field->name, '*')) return; // whatever the object's formulas name
     snprintf(name, sizeof name, "%s", prefix);

@@ -103,7 +103,7 @@ bool viewer_explain_blow_up(viewer_player *player, char *words, size_t size) {
     // a frame begins anew: the branch that blew up is forgotten when it goes on
     bool back = viewer_player_go_to(player, frame);
     if (lost != UINT32_MAX)
-        snprintf(words, size, "it blew up: first %s, at %.4g s%s. Back at frame %" PRIu64 ", the last good one", who, time,
-                 spring, frame);
+        snprintf(words, size, "it blew up: first %s, at %.4g s%s. Back at frame %" PRIu64 ", the last good one", who,
+                 time, spring, frame);
     return back;
 }

@@ -20,7 +20,8 @@ static bool find_place(const viewer_stage *stage, size_t side, double x, double 
                        uint32_t *particle) {
     const skein_world *world = stage->sides[side].world;
     const double *eye = stage->camera.lens.eye;
-    double direction[3], t, slope = 2 * tan(0.5 * stage->camera.lens.fov * 0.017453292519943295) / fmax(stage->height, 1);
+    double direction[3], t,
+        slope = 2 * tan(0.5 * stage->camera.lens.fov * 0.017453292519943295) / fmax(stage->height, 1);
     skein_hit hit;
     viewer_ray_at(stage, side, x, y, direction);
     bool on_face = !skein_ray_cast(world, eye, direction, SKEIN_BODY, &hit) && hit.t < INFINITY;
@@ -60,7 +61,8 @@ static void dab(viewer_stage *stage, double x, double y) {
     if (!find_place(stage, brush->side, x, y, &body, place, &nearest)) return;
     render_camera_axes(&stage->camera.lens, right, up, back);
     for (int k = 0; k < 3; k++) depth -= back[k] * (place[k] - stage->camera.lens.eye[k]);
-    double radius = brush->radius * 2 * depth * tan(0.5 * stage->camera.lens.fov * 0.017453292519943295) / fmax(stage->height, 1);
+    double radius =
+        brush->radius * 2 * depth * tan(0.5 * stage->camera.lens.fov * 0.017453292519943295) / fmax(stage->height, 1);
     skein_view view = skein_position_view(world);
     for (size_t i = 0; i < brush->count; i++) {
         const skein_real *p = view.xyzw + 4 * (size_t)view.slot_of[brush->first + i];
@@ -105,8 +107,7 @@ void viewer_brush_go_on(viewer_stage *stage) {
     viewer_brush *brush = &stage->handles.brush;
     double way[2] = {stage->x - brush->last[0], stage->y - brush->last[1]};
     int dabs = (int)fmin(ceil(hypot(way[0], way[1]) / fmax(0.6 * brush->radius, 2)), MOST_DABS);
-    for (int i = 1; i <= dabs; i++)
-        dab(stage, brush->last[0] + way[0] * i / dabs, brush->last[1] + way[1] * i / dabs);
+    for (int i = 1; i <= dabs; i++) dab(stage, brush->last[0] + way[0] * i / dabs, brush->last[1] + way[1] * i / dabs);
     brush->last[0] = stage->x, brush->last[1] = stage->y;
 }
 

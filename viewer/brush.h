@@ -13,10 +13,10 @@
 typedef struct viewer_stage viewer_stage;
 
 typedef struct viewer_brush {
-    double radius; /* pixels */
+    double radius;     /* pixels */
     bool paints, pins; /* pins: it does not free */
     size_t side, body;
-    double last[2]; /* where it was */
+    double last[2];      /* where it was */
     unsigned char *held; /* of the body's particles: as it is to be */
     size_t first, count, changed;
 } viewer_brush;

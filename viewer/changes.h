@@ -20,12 +20,12 @@ typedef struct viewer_value {
 } viewer_value;
 
 typedef struct viewer_change {
-    char *set;                   /* "path=value" */
-    viewer_value before, after;  /* `field` NULL: the scene has to be built anew */
+    char *set;                      /* "path=value" */
+    viewer_value before, after;     /* `field` NULL: the scene has to be built anew */
     char *text_before, *text_after; /* of texts */
-    bool joined; /* done and undone together with the one before it */
-    bool shared; /* done in place in both of two worlds */
-    bool whole;  /* no later one of the same field joins it */
+    bool joined;                    /* done and undone together with the one before it */
+    bool shared;                    /* done in place in both of two worlds */
+    bool whole;                     /* no later one of the same field joins it */
 } viewer_change;
 
 typedef struct viewer_changes {
@@ -36,8 +36,7 @@ typedef struct viewer_changes {
 /* Adds one, and forgets those that were undone. One right after another of the same field joins it (a slider that is
  * dragged is one change). `before` and `after` are copied; NULL where the scene has to be built anew. False when there
  * is no memory, and then nothing has changed. */
-bool viewer_changes_add(viewer_changes *changes, const char *set, const viewer_value *before,
-                        const viewer_value *after);
+bool viewer_changes_add(viewer_changes *changes, const char *set, const viewer_value *before, const viewer_value *after);
 /* The last one is whole: what is changed next is another change. */
 void viewer_changes_close(viewer_changes *changes);
 /* Takes one out, whatever came after it; `set` as it was added. Nothing where it is not there. */

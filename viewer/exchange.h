@@ -17,7 +17,14 @@
 #include "viewer/offer.h"
 #include "viewer/pace.h"
 
-enum { VIEWER_TEXT = 1024, VIEWER_PICTURES = 4, VIEWER_SIDES = 2, VIEWER_SAMPLES = 240, VIEWER_LOG_LINES = 200, VIEWER_RECENTS = 8 };
+enum {
+    VIEWER_TEXT = 1024,
+    VIEWER_PICTURES = 4,
+    VIEWER_SIDES = 2,
+    VIEWER_SAMPLES = 240,
+    VIEWER_LOG_LINES = 200,
+    VIEWER_RECENTS = 8
+};
 
 /* ---- requests ---- */
 
@@ -91,10 +98,10 @@ typedef struct viewer_own_field {
 typedef struct viewer_entry {
     const skein_field *field;
     skein_value value;
-    double anchor; /* its largest number when it was first seen: sliders are measured by it */
-    bool shapes;   /* a change builds the scene anew */
+    double anchor;              /* its largest number when it was first seen: sliders are measured by it */
+    bool shapes;                /* a change builds the scene anew */
     const skein_field *instead; /* that has taken its place, so that it counts for nothing; or NULL */
-    bool cut;      /* of a longer text */
+    bool cut;                   /* of a longer text */
     char text[VIEWER_TEXT];
 } viewer_entry;
 
@@ -164,7 +171,7 @@ typedef struct viewer_side {
     viewer_plots plots;
     viewer_pass passes[VIEWER_PASSES];
     size_t pass_count;
-    bool flock; /* there is one, whose order is plotted */
+    bool flock;             /* there is one, whose order is plotted */
     viewer_strokes strokes; /* over its picture */
     viewer_handle_place handles[GIZMO_PARTS];
 } viewer_side;
@@ -185,12 +192,12 @@ typedef struct viewer_shown {
     double needed;                           /* substeps, where there are too few to be stable; else 0 */
     char recent[VIEWER_RECENTS][VIEWER_TEXT];
     size_t recent_count;
-    size_t changes;                          /* that are done, besides those that were given */
-    viewer_tool tool;     /* that the pointer has, and the object that it is for */
+    size_t changes;   /* that are done, besides those that were given */
+    viewer_tool tool; /* that the pointer has, and the object that it is for */
     skein_category tool_category;
     size_t tool_index;
-    double brush;         /* its radius, pixels */
-    char tool_words[96];  /* what it does, at tool_at */
+    double brush;        /* its radius, pixels */
+    char tool_words[96]; /* what it does, at tool_at */
     double tool_at[2];
     viewer_offer offer;   /* a text that was not taken */
     viewer_lesson lesson; /* while its panel is open */

@@ -5,8 +5,8 @@
 #ifndef SKEIN_VIEWER_FLOCK_H
 #define SKEIN_VIEWER_FLOCK_H
 
-#include "viewer/camera.h"
 #include "skein/skein.h"
+#include "viewer/camera.h"
 
 typedef struct viewer_ride {
     bool chosen, rides;

@@ -19,8 +19,8 @@ static const double shown_part = 0.3, longest_run = 0.5;
 
 struct viewer_gallery {
     render_target target; /* the painter's */
-    size_t next; /* card whose picture is due */
-    viewer_card *card; /* whose picture is being made */
+    size_t next;          /* card whose picture is due */
+    viewer_card *card;    /* whose picture is being made */
     char fault[240];
 };
 
@@ -144,8 +144,8 @@ static unsigned draw_card(viewer_stage *stage, viewer_player *player) {
         render_world_frame_settle(frame);
         render_camera camera = render_world_frame_camera(frame, aspect);
         render_draw_in_parts(stage->draw, 0);
-        status = render_draw_frame(stage->draw, render_world_frame_get(frame), &camera,
-                                   gallery->target.framebuffer, VIEWER_CARD_WIDTH, VIEWER_CARD_HEIGHT, &error);
+        status = render_draw_frame(stage->draw, render_world_frame_get(frame), &camera, gallery->target.framebuffer,
+                                   VIEWER_CARD_WIDTH, VIEWER_CARD_HEIGHT, &error);
     }
     if (!status) status = render_target_read(&gallery->target, &image, &error);
     unsigned texture = 0;

@@ -100,7 +100,8 @@ static void fill(viewer_strokes *strokes, const double (*corners)[2], int count,
 void viewer_stroke_edge(viewer_strokes *strokes, const viewer_sight *sight, const double from[3], const double to[3],
                         viewer_stroke like) {
     double a[2], b[2];
-    if (viewer_sight_project(sight, from, a) && viewer_sight_project(sight, to, b)) viewer_stroke_line(strokes, a, b, like);
+    if (viewer_sight_project(sight, from, a) && viewer_sight_project(sight, to, b))
+        viewer_stroke_line(strokes, a, b, like);
 }
 
 /* ---- The gizmo on the picture ---- */
@@ -141,7 +142,8 @@ static void draw_arm(const viewer_gizmo *gizmo, const viewer_sight *sight, int a
     for (int k = 0; k < 2; k++) way[k] /= length;
     viewer_stroke_line(strokes, a, b, paint_of(gizmo, axis, 3, 1));
     double s = gizmo->scale, wide = (gizmo->tool == VIEWER_SIZES ? box_half : head_wide) * s, ahead = head_long * s;
-    const double left[2] = {b[0] - wide * way[1], b[1] + wide * way[0]}, right[2] = {b[0] + wide * way[1], b[1] - wide * way[0]};
+    const double left[2] = {b[0] - wide * way[1], b[1] + wide * way[0]},
+                 right[2] = {b[0] + wide * way[1], b[1] - wide * way[0]};
     if (gizmo->tool == VIEWER_SIZES) {
         ahead = 2 * wide;
         const double l[2] = {left[0] + ahead * way[0], left[1] + ahead * way[1]},
@@ -149,7 +151,8 @@ static void draw_arm(const viewer_gizmo *gizmo, const viewer_sight *sight, int a
         const double box[4][2] = {{left[0], left[1]}, {l[0], l[1]}, {r[0], r[1]}, {right[0], right[1]}};
         fill(strokes, box, 4, paint_of(gizmo, axis, 0, 1));
     } else {
-        const double head[3][2] = {{left[0], left[1]}, {b[0] + ahead * way[0], b[1] + ahead * way[1]}, {right[0], right[1]}};
+        const double head[3][2] = {
+            {left[0], left[1]}, {b[0] + ahead * way[0], b[1] + ahead * way[1]}, {right[0], right[1]}};
         fill(strokes, head, 3, paint_of(gizmo, axis, 0, 1));
     }
 }
@@ -204,7 +207,10 @@ static void draw_middle(const viewer_gizmo *gizmo, const viewer_sight *sight, vi
         return;
     }
     half *= 1.3;
-    const double c[4][2] = {{at[0] - half, at[1] - half}, {at[0] + half, at[1] - half}, {at[0] + half, at[1] + half}, {at[0] - half, at[1] + half}};
+    const double c[4][2] = {{at[0] - half, at[1] - half},
+                            {at[0] + half, at[1] - half},
+                            {at[0] + half, at[1] + half},
+                            {at[0] - half, at[1] + half}};
     fill(strokes, c, 4, paint_of(gizmo, GIZMO_ALL, 0, 0.95));
 }
 
@@ -233,7 +239,8 @@ static bool is_inside(const viewer_stroke *s, int corners, double x, double y) {
     int left = 0, right = 0;
     for (int i = 0; i < corners; i++) {
         const float *a = s->at[i], *b = s->at[(i + 1) % corners];
-        double side = ((double)b[0] - (double)a[0]) * (y - (double)a[1]) - ((double)b[1] - (double)a[1]) * (x - (double)a[0]);
+        double side =
+            ((double)b[0] - (double)a[0]) * (y - (double)a[1]) - ((double)b[1] - (double)a[1]) * (x - (double)a[0]);
         left += side >= 0, right += side <= 0;
     }
     return left == corners || right == corners;
@@ -241,7 +248,8 @@ static bool is_inside(const viewer_stroke *s, int corners, double x, double y) {
 
 /* Pixels from a stroke; 0 on it. */
 static double distance_to(const viewer_stroke *s, double x, double y) {
-    if (s->shape == STROKE_CIRCLE) return fmax(hypot(x - (double)s->at[0][0], y - (double)s->at[0][1]) - (double)s->at[1][0], 0);
+    if (s->shape == STROKE_CIRCLE)
+        return fmax(hypot(x - (double)s->at[0][0], y - (double)s->at[0][1]) - (double)s->at[1][0], 0);
     if (s->shape == STROKE_LINE) return to_segment(s->at[0], s->at[1], x, y);
     int corners = s->shape == STROKE_TRIANGLE ? 3 : 4;
     double least = is_inside(s, corners, x, y) ? 0 : INFINITY;
@@ -293,7 +301,8 @@ bool viewer_gizmo_place(const viewer_gizmo *gizmo, const viewer_sight *sight, in
 /* ---- Following the pointer ---- */
 
 /* How far along an axis the ray passes it nearest. */
-static bool along_axis(const viewer_gizmo *gizmo, const viewer_sight *sight, int axis, const double at[2], double *metres) {
+static bool along_axis(const viewer_gizmo *gizmo, const viewer_sight *sight, int axis, const double at[2],
+                       double *metres) {
     double ray[3], off[3];
     const double *a = gizmo->axes[axis];
     viewer_sight_ray(sight, at[0], at[1], ray);
@@ -302,7 +311,8 @@ static bool along_axis(const viewer_gizmo *gizmo, const viewer_sight *sight, int
     if (rest < 1e-3) return false;
     *metres = (across * render_dot(ray, off) - render_dot(a, off)) / rest;
     // what lies behind the eye is no place to go to
-    return render_dot(ray, off) + *metres * across > 0 && fabs(*metres) < 1e3 * viewer_sight_metres(sight, gizmo->origin) * sight->height;
+    return render_dot(ray, off) + *metres * across > 0 &&
+           fabs(*metres) < 1e3 * viewer_sight_metres(sight, gizmo->origin) * sight->height;
 }
 
 /* Where the ray meets the plane through the origin. */
@@ -343,8 +353,8 @@ static bool turned(const viewer_gizmo *gizmo, const viewer_sight *sight, int axi
     return true;
 }
 
-static bool moved(const viewer_gizmo *gizmo, const viewer_sight *sight, int part, const double from[2], const double to[2],
-                  double by[3]) {
+static bool moved(const viewer_gizmo *gizmo, const viewer_sight *sight, int part, const double from[2],
+                  const double to[2], double by[3]) {
     double a, b, p[3], q[3], right[3], up[3], back[3];
     if (part < GIZMO_PLANE) {
         if (!along_axis(gizmo, sight, part, from, &a) || !along_axis(gizmo, sight, part, to, &b)) return false;
@@ -358,13 +368,14 @@ static bool moved(const viewer_gizmo *gizmo, const viewer_sight *sight, int part
     return true;
 }
 
-static bool sized(const viewer_gizmo *gizmo, const viewer_sight *sight, int part, const double from[2], const double to[2],
-                  double by[3]) {
+static bool sized(const viewer_gizmo *gizmo, const viewer_sight *sight, int part, const double from[2],
+                  const double to[2], double by[3]) {
     static const double least = 0.02, most = 50;
     double a, b, times = exp((to[0] - from[0] - to[1] + from[1]) / (160 * gizmo->scale));
     for (int k = 0; k < 3; k++) by[k] = 1;
     if (part < GIZMO_PLANE) {
-        if (!along_axis(gizmo, sight, part, from, &a) || !along_axis(gizmo, sight, part, to, &b) || !(fabs(a) > 0)) return false;
+        if (!along_axis(gizmo, sight, part, from, &a) || !along_axis(gizmo, sight, part, to, &b) || !(fabs(a) > 0))
+            return false;
         times = b / a;
     }
     times = fmin(fmax(times, least), most);

@@ -28,7 +28,14 @@ typedef enum viewer_tool {
 enum { GIZMO_AXIS = 0, GIZMO_PLANE = 3, GIZMO_ALL = 6, GIZMO_PARTS = 7, GIZMO_NOTHING = -1 };
 
 /* Colours by meaning; the theme has them. */
-typedef enum viewer_paint { VIEWER_PAINT_X, VIEWER_PAINT_Y, VIEWER_PAINT_Z, VIEWER_PAINT_ALL, VIEWER_PAINT_HOT, VIEWER_PAINT_QUIET } viewer_paint;
+typedef enum viewer_paint {
+    VIEWER_PAINT_X,
+    VIEWER_PAINT_Y,
+    VIEWER_PAINT_Z,
+    VIEWER_PAINT_ALL,
+    VIEWER_PAINT_HOT,
+    VIEWER_PAINT_QUIET
+} viewer_paint;
 
 /* A line, a filled triangle or square, or a circle on the picture, pixels from its upper left corner. */
 typedef struct viewer_stroke {

@@ -31,7 +31,10 @@ static void name_object(const viewer_stage *stage, char *out, size_t size) {
     skein_value name = {0, {0, 0, 0}, NULL};
     bool named = !skein_get(world, handle, "name", &name) && name.text && name.text[0];
     const skein_kind *kind = skein_object_kind(world, handle);
-    snprintf(out, size, "%s %zu, %.60s", skein_category_text(h->category), h->index, named ? name.text : kind ? kind->name : "");
+    snprintf(out, size, "%s %zu, %.60s", skein_category_text(h->category), h->index,
+             named  ? name.text
+             : kind ? kind->name
+                    : "");
 }
 
 static void tell(viewer_stage *stage) {
@@ -40,10 +43,20 @@ static void tell(viewer_stage *stage) {
     char name[120] = "";
     if (h->chosen) name_object(stage, name, sizeof name);
     bool has = h->chosen && has_spot(stage, h->category, h->index, &spot);
-    if (h->tool == VIEWER_PINS) viewer_note(stage, "the brush: drag over a body to pin its particles, with Shift to free them; the wheel makes it wider; P or Esc puts it away");
-    else if (h->tool == VIEWER_CUTS) viewer_note(stage, "the knife: a stroke cuts the cloth whose picture it crosses; Shift and the other buttons look around; K or Esc puts it away");
-    else if (h->tool && has && !viewer_spot_can(&spot, h->tool)) viewer_note(stage, "%s: there is no field to %s it by", name, words_of_tool[h->tool]);
-    else if (h->tool) viewer_note(stage, "%s: drag a handle to %s it, with Ctrl by whole steps; N is the next object, Esc puts them away", name, words_of_tool[h->tool]);
+    if (h->tool == VIEWER_PINS)
+        viewer_note(
+            stage,
+            "the brush: drag over a body to pin its particles, with Shift to free them; the wheel makes it wider; P or Esc puts it away");
+    else if (h->tool == VIEWER_CUTS)
+        viewer_note(
+            stage,
+            "the knife: a stroke cuts the cloth whose picture it crosses; Shift and the other buttons look around; K or Esc puts it away");
+    else if (h->tool && has && !viewer_spot_can(&spot, h->tool))
+        viewer_note(stage, "%s: there is no field to %s it by", name, words_of_tool[h->tool]);
+    else if (h->tool)
+        viewer_note(stage,
+                    "%s: drag a handle to %s it, with Ctrl by whole steps; N is the next object, Esc puts them away",
+                    name, words_of_tool[h->tool]);
     else viewer_note(stage, "no handles");
     viewer_event(stage->events, "tool %s %s", words_of_tool[h->tool], h->tool >= VIEWER_PINS ? "" : name);
     stage->dirty = true;
@@ -191,7 +204,8 @@ static bool gizmo_of(const viewer_stage *stage, size_t side, viewer_gizmo *gizmo
         gizmo->hot = h->part;
         return true;
     }
-    if (!viewer_spot_find(spot, stage->sides[side].world, h->category, h->index) || !viewer_spot_can(spot, h->tool)) return false;
+    if (!viewer_spot_find(spot, stage->sides[side].world, h->category, h->index) || !viewer_spot_can(spot, h->tool))
+        return false;
     viewer_spot_gizmo(spot, h->tool, stage->camera.lens.target, gizmo);
     gizmo->scale = scale_of(stage);
     gizmo->hot = side == h->hot_side ? h->hot : GIZMO_NOTHING;
@@ -223,11 +237,13 @@ static void draw_outline(const viewer_stage *stage, size_t side, const viewer_gi
             corner[c][k] = middle[k];
             for (int a = 0; a < 3; a++) corner[c][k] += (c >> a & 1 ? 1 : -1) * half[a] * axes[a][k];
         }
-        if (h->holds && h->moved) viewer_spot_carry(spot, gizmo->tool == VIEWER_MOVES ? &h->gizmo : gizmo, h->part, h->by, corner[c]);
+        if (h->holds && h->moved)
+            viewer_spot_carry(spot, gizmo->tool == VIEWER_MOVES ? &h->gizmo : gizmo, h->part, h->by, corner[c]);
     }
     for (int c = 0; c < 8; c++)
         for (int a = 0; a < 3; a++)
-            if (!(c >> a & 1) && !(spot->flat && (a == 1 || c & 2))) viewer_stroke_edge(strokes, &sight, corner[c], corner[c | 1 << a], like);
+            if (!(c >> a & 1) && !(spot->flat && (a == 1 || c & 2)))
+                viewer_stroke_edge(strokes, &sight, corner[c], corner[c | 1 << a], like);
 }
 
 /* The brush, and who is held of the body that it is for. */
@@ -237,18 +253,25 @@ static void draw_brush(const viewer_stage *stage, size_t side, viewer_strokes *s
     viewer_sight sight = sight_of(stage, side);
     double inside;
     skein_surface s = {0};
-    bool body = h->chosen && h->category == SKEIN_BODY &&
-                !skein_body_surface(world, skein_object_at(world, SKEIN_BODY, h->brush.paints ? h->brush.body : h->index), &s);
+    bool body =
+        h->chosen && h->category == SKEIN_BODY &&
+        !skein_body_surface(world, skein_object_at(world, SKEIN_BODY, h->brush.paints ? h->brush.body : h->index), &s);
     for (size_t i = 0; body && i < s.particle_count && strokes->count + 4 < VIEWER_STROKES; i++) {
         double place[3], at[2];
-        if (!viewer_is_held(world, s.first_particle + (uint32_t)i) || skein_positions_copy(world, s.first_particle + i, 1, place)) continue;
+        if (!viewer_is_held(world, s.first_particle + (uint32_t)i) ||
+            skein_positions_copy(world, s.first_particle + i, 1, place))
+            continue;
         if (!viewer_sight_project(&sight, place, at)) continue;
-        viewer_stroke_circle(strokes, at, 3.5 * scale_of(stage), (viewer_stroke){.width = 0, .opacity = 1, .paint = VIEWER_PAINT_HOT, .part = GIZMO_NOTHING});
+        viewer_stroke_circle(
+            strokes, at, 3.5 * scale_of(stage),
+            (viewer_stroke){.width = 0, .opacity = 1, .paint = VIEWER_PAINT_HOT, .part = GIZMO_NOTHING});
     }
     if (!stage->over || viewer_side_at(stage, stage->x, &inside) != side) return;
     const double at[2] = {stage->x + 0.5, stage->y + 0.5};
     viewer_stroke_circle(strokes, at, h->brush.radius,
-                         (viewer_stroke){.width = 1.6f, .opacity = 0.95f, .part = GIZMO_NOTHING,
+                         (viewer_stroke){.width = 1.6f,
+                                         .opacity = 0.95f,
+                                         .part = GIZMO_NOTHING,
                                          .paint = h->brush.paints ? VIEWER_PAINT_HOT : VIEWER_PAINT_ALL});
 }
 
@@ -258,8 +281,9 @@ static void draw_knife(const viewer_stage *stage, size_t side, viewer_strokes *s
     double inside;
     if (!stage->over || viewer_side_at(stage, stage->x, &inside) != side) return;
     const double at[2] = {stage->x + 0.5, stage->y + 0.5};
-    viewer_stroke_circle(strokes, at, (knife->cuts ? 5 : 3) * scale_of(stage),
-                         (viewer_stroke){.width = 0, .opacity = 0.95f, .paint = VIEWER_PAINT_HOT, .part = GIZMO_NOTHING});
+    viewer_stroke_circle(
+        strokes, at, (knife->cuts ? 5 : 3) * scale_of(stage),
+        (viewer_stroke){.width = 0, .opacity = 0.95f, .paint = VIEWER_PAINT_HOT, .part = GIZMO_NOTHING});
 }
 
 void viewer_handles_draw(const viewer_stage *stage, size_t side, viewer_strokes *strokes) {
@@ -309,7 +333,8 @@ void viewer_handles_anew(viewer_stage *stage, bool another_scene) {
     viewer_brush_forget(&h->brush);
     h->knife.cuts = false;
     if (another_scene) h->tool = VIEWER_NO_TOOL, h->chosen = false;
-    else if (h->chosen && h->tool < VIEWER_PINS && !has_spot(stage, h->category, h->index, &spot)) h->tool = VIEWER_NO_TOOL, h->chosen = false;
+    else if (h->chosen && h->tool < VIEWER_PINS && !has_spot(stage, h->category, h->index, &spot))
+        h->tool = VIEWER_NO_TOOL, h->chosen = false;
     h->hot = GIZMO_NOTHING;
 }
 
@@ -342,7 +367,8 @@ bool viewer_handles_press(viewer_stage *stage, const viewer_request *r) {
     h->side = side, h->part = part;
     h->from[0] = r->x, h->from[1] = r->y;
     for (int k = 0; k < 3; k++) h->by[k] = h->tool == VIEWER_SIZES ? 1 : 0;
-    viewer_event(stage->events, "takes %shandle %s %s", side ? "other " : "", words_of_tool[h->tool], viewer_gizmo_part(part));
+    viewer_event(stage->events, "takes %shandle %s %s", side ? "other " : "", words_of_tool[h->tool],
+                 viewer_gizmo_part(part));
     stage->dirty = true;
     return true;
 }
@@ -355,7 +381,8 @@ static bool follows_live(const viewer_handles *h) {
 static size_t changes_of(const viewer_stage *stage, viewer_spot_change changes[2]) {
     const viewer_handles *h = &stage->handles;
     viewer_sight sight = sight_of(stage, h->side);
-    return viewer_spot_apply(&h->spot, &h->gizmo, h->part, h->by, 0.5 * viewer_sight_metres(&sight, h->gizmo.origin), changes);
+    return viewer_spot_apply(&h->spot, &h->gizmo, h->part, h->by, 0.5 * viewer_sight_metres(&sight, h->gizmo.origin),
+                             changes);
 }
 
 /* What the fields are before a hand is on them, to the bit. */
@@ -368,7 +395,8 @@ static void keep_before(viewer_stage *stage) {
             viewer_handles_before *before = &h->before[h->before_count];
             const skein_world *world = stage->sides[s].world;
             *before = (viewer_handles_before){s, changes[i].field, {0, {0, 0, 0}, NULL}};
-            if (!skein_get(world, skein_object_at(world, h->category, h->index), changes[i].field->name, &before->value)) h->before_count++;
+            if (!skein_get(world, skein_object_at(world, h->category, h->index), changes[i].field->name, &before->value))
+                h->before_count++;
         }
 }
 
@@ -406,7 +434,8 @@ static void describe(viewer_handles *h) {
     int axis = h->part % 3;
     const char *part = viewer_gizmo_part(h->part);
     if (h->tool == VIEWER_TURNS) snprintf(h->words, sizeof h->words, "%s %+.1f degrees", part, h->by[0]);
-    else if (h->tool == VIEWER_SIZES) snprintf(h->words, sizeof h->words, "%s x %.3g", part, h->by[h->part == GIZMO_ALL ? 0 : axis]);
+    else if (h->tool == VIEWER_SIZES)
+        snprintf(h->words, sizeof h->words, "%s x %.3g", part, h->by[h->part == GIZMO_ALL ? 0 : axis]);
     else snprintf(h->words, sizeof h->words, "%+.3g %+.3g %+.3g m", h->by[0] + 0.0, h->by[1] + 0.0, h->by[2] + 0.0);
 }
 
@@ -416,7 +445,8 @@ static void show_where(viewer_stage *stage) {
     viewer_spot_change changes[2];
     if (follows_live(h)) {
         size_t count = changes_of(stage, changes);
-        for (size_t i = 0; i < count; i++) viewer_stage_try(stage, h->category, h->index, changes[i].field, &changes[i].value);
+        for (size_t i = 0; i < count; i++)
+            viewer_stage_try(stage, h->category, h->index, changes[i].field, &changes[i].value);
     }
     double *moved = h->places ? malloc(3 * h->count * sizeof *moved + 1) : NULL;
     if (!moved) return;
@@ -455,8 +485,8 @@ static void take_back(viewer_stage *stage) {
     viewer_handles *h = &stage->handles;
     for (size_t i = 0; i < h->before_count; i++)
         skein_set(stage->sides[h->before[i].side].world,
-                  skein_object_at(stage->sides[h->before[i].side].world, h->category, h->index), h->before[i].field->name,
-                  h->before[i].value);
+                  skein_object_at(stage->sides[h->before[i].side].world, h->category, h->index),
+                  h->before[i].field->name, h->before[i].value);
     if (h->places) skein_positions_set(stage->sides[h->side].world, h->first, h->count, h->places);
 }
 

@@ -61,20 +61,23 @@ static void keep_cuts(viewer_history *history, const skein_world *world, uint64_
     history->cut_changes = changes;
     // what is known of frames that are forgotten goes, but for what holds on from there
     size_t old = 0;
-    while (old + 1 < history->cut_count && history->cuts[old + 1].frame <= history->first) free(history->cuts[old++].face);
+    while (old + 1 < history->cut_count && history->cuts[old + 1].frame <= history->first)
+        free(history->cuts[old++].face);
     history->cut_count -= old;
     memmove(history->cuts, history->cuts + old, history->cut_count * sizeof *history->cuts);
 }
 
 /* Makes a body cut where `face` (NULL: nowhere) says so. */
-static bool set_cut(skein_world *world, skein_handle body, const skein_cuts *now, const unsigned char *face, size_t count) {
+static bool set_cut(skein_world *world, skein_handle body, const skein_cuts *now, const unsigned char *face,
+                    size_t count) {
     uint32_t *list = malloc(count * sizeof *list + 1);
     size_t length = 0, same = 0;
     for (size_t f = 0; f < count && list; f++) {
         if (face && face[f]) list[length++] = (uint32_t)f;
         same += (now->face && now->face[f]) == (face && face[f]);
     }
-    bool good = list && (same == count || (!skein_cut_mend(world, body) && (!length || !skein_cut_faces(world, body, list, length))));
+    bool good = list && (same == count ||
+                         (!skein_cut_mend(world, body) && (!length || !skein_cut_faces(world, body, list, length))));
     free(list);
     return good;
 }
@@ -88,7 +91,8 @@ static bool restore_cuts(const viewer_history *history, skein_world *world, uint
     for (size_t b = 0; b < skein_object_count(world, SKEIN_BODY); b++) {
         skein_cuts now;
         size_t count = faces_of(world, b, &now);
-        if (count) good &= set_cut(world, skein_object_at(world, SKEIN_BODY, b), &now, cut ? cut->face + at : NULL, count);
+        if (count)
+            good &= set_cut(world, skein_object_at(world, SKEIN_BODY, b), &now, cut ? cut->face + at : NULL, count);
         at += count;
     }
     return good;

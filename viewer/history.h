@@ -20,7 +20,7 @@ typedef struct viewer_history {
     size_t particles, room;
     uint64_t first, last;
     bool empty;
-    double *scratch; /* particles x 3 */
+    double *scratch;          /* particles x 3 */
     viewer_history_cut *cuts; /* cut_count, by their frames; none: all is whole */
     size_t cut_count, cut_room, faces;
     uint64_t cut_changes; /* of the bodies' cuts, when last looked at */

@@ -14,8 +14,7 @@ static bool can_be_led(const skein_kind *kind) {
 static bool is_led(const viewer_stage *stage, size_t side, size_t index) {
     const viewer_hunt *hunt = &stage->hunt;
     for (size_t i = 0; i < hunt->count; i++)
-        if (hunt->led[i].side == side && hunt->led[i].index == index &&
-            hunt->led[i].opened == stage->sides[side].opened)
+        if (hunt->led[i].side == side && hunt->led[i].index == index && hunt->led[i].opened == stage->sides[side].opened)
             return true;
     return false;
 }

@@ -84,7 +84,8 @@ static void follow(viewer_stage *stage, const viewer_key *key) {
     stage->camera.follows = !stage->camera.follows;
     stage->camera.has_middle = false;
     stage->dirty = true;
-    if (stage->camera.follows) viewer_note(stage, "the view goes along with %.100s; T ends it", body[0] ? body : "the bodies");
+    if (stage->camera.follows)
+        viewer_note(stage, "the view goes along with %.100s; T ends it", body[0] ? body : "the bodies");
     else viewer_note(stage, "the view stands still");
 }
 
@@ -113,8 +114,7 @@ static void save_mesh(viewer_stage *stage, const viewer_key *key) {
 static bool colours_tell(skein_world *world, int colour) {
     size_t springs = 0, count = skein_object_count(world, SKEIN_BODY);
     bool birds = false;
-    for (size_t i = 0; i < count; i++)
-        birds |= render_are_birds(world, skein_object_at(world, SKEIN_BODY, i), NULL);
+    for (size_t i = 0; i < count; i++) birds |= render_are_birds(world, skein_object_at(world, SKEIN_BODY, i), NULL);
     switch (colour) {
     case RENDER_BY_BODY: return count > 1;
     case RENDER_BY_STRAIN: return !skein_springs_copy(world, NULL, 0, &springs) && springs > 0;
@@ -158,7 +158,8 @@ static void change_theme(viewer_stage *stage, const viewer_key *key) {
     (void)key;
     stage->light = !stage->light;
     bool kept = viewer_theme_keep(stage->light ? VIEWER_LIGHT : VIEWER_DARK);
-    viewer_note(stage, "%s%s", stage->light ? "light" : "dark", kept ? "" : " (it cannot be kept: ~/.config is not writable)");
+    viewer_note(stage, "%s%s", stage->light ? "light" : "dark",
+                kept ? "" : " (it cannot be kept: ~/.config is not writable)");
     stage->dirty = true;
 }
 
@@ -199,8 +200,13 @@ static void change_field(viewer_stage *stage, const viewer_key *key) {
             double step_size = fmax(0.1 * fabs(value.number[0]), 0.01 * fmax(fabs(field->initial[0]), 1));
             double changed = value.number[0] + key->number * step_size;
             changed = fmin(fmax(changed, field->least), field->most);
-            viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_FORCE, .index = i, .field = field,
-                                      .side = (int)s, .value = skein_number(changed), .down = true};
+            viewer_request request = {.kind = VIEWER_SET,
+                                      .category = SKEIN_FORCE,
+                                      .index = i,
+                                      .field = field,
+                                      .side = (int)s,
+                                      .value = skein_number(changed),
+                                      .down = true};
             viewer_stage_set(stage, &request);
             if (s == 0) viewer_note(stage, "%s %.4g %s", key->field, changed, field->unit);
         }
@@ -244,10 +250,10 @@ static void escape(viewer_stage *stage, const viewer_key *key) {
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = move, .number = motion_, .help = help_ }
 #define SCENE(code_, name_, act_, help_) \
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .help = help_ }
-#define CONTROL(code_, mods_, name_, act_, number_, help_)                                                    \
-    {                                                                                                       \
-        .code = code_, .mods = GLFW_MOD_CONTROL | (mods_), .name = name_, .when = WITH_SCENE, .act = act_,  \
-        .number = number_, .help = help_                                                                    \
+#define CONTROL(code_, mods_, name_, act_, number_, help_)                                                 \
+    {                                                                                                      \
+        .code = code_, .mods = GLFW_MOD_CONTROL | (mods_), .name = name_, .when = WITH_SCENE, .act = act_, \
+        .number = number_, .help = help_                                                                   \
     }
 #define REPEAT(code_, name_, act_, help_) \
     { .code = code_, .name = name_, .when = WITH_SCENE, .act = act_, .repeats = true, .help = help_ }
@@ -282,9 +288,11 @@ static const viewer_key keys[] = {
     MOVE(GLFW_KEY_PAGE_DOWN, NULL, VIEWER_TURN_DOWN, NULL),
     SCENE(GLFW_KEY_F, "F", frame_all, "brings all bodies into the picture, from the side that is looked from"),
     SCENE(GLFW_KEY_0, "0", first_view, "back to the first view"),
-    SCENE(GLFW_KEY_T, "T", follow, "the view goes along with the bodies (or the one that camera.follow names), and stands still again"),
+    SCENE(GLFW_KEY_T, "T", follow,
+          "the view goes along with the bodies (or the one that camera.follow names), and stands still again"),
     SCENE(GLFW_KEY_C, "C", fly, "flight in the first person, and back to the first view"),
-    SCENE(GLFW_KEY_R, "R", next_colours, "other colours, those that tell something: material, body, direction, speed, strain"),
+    SCENE(GLFW_KEY_R, "R", next_colours,
+          "other colours, those that tell something: material, body, direction, speed, strain"),
     METHOD(0, "1 to 9", "the method: the n-th that `skein list methods` names"),
     METHOD(1, NULL, NULL),
     METHOD(2, NULL, NULL),
@@ -294,15 +302,21 @@ static const viewer_key keys[] = {
     METHOD(6, NULL, NULL),
     METHOD(7, NULL, NULL),
     METHOD(8, NULL, NULL),
-    TOOL(GLFW_KEY_G, "G", VIEWER_MOVES, "handles to move what is under the pointer: a body, a collider, a force with a place; again puts them away"),
+    TOOL(GLFW_KEY_G, "G", VIEWER_MOVES,
+         "handles to move what is under the pointer: a body, a collider, a force with a place; again puts them away"),
     TOOL(GLFW_KEY_H, "H", VIEWER_TURNS, "handles to turn it"),
     TOOL(GLFW_KEY_L, "L", VIEWER_SIZES, "handles to make it larger and smaller"),
-    TOOL(GLFW_KEY_P, "P", VIEWER_PINS, "a brush that pins a body's particles, with Shift frees them; the wheel makes it wider"),
-    TOOL(GLFW_KEY_K, "K", VIEWER_CUTS, "a knife: a stroke cuts the cloth whose picture it crosses; going back makes it whole"),
+    TOOL(GLFW_KEY_P, "P", VIEWER_PINS,
+         "a brush that pins a body's particles, with Shift frees them; the wheel makes it wider"),
+    TOOL(GLFW_KEY_K, "K", VIEWER_CUTS,
+         "a knife: a stroke cuts the cloth whose picture it crosses; going back makes it whole"),
     SCENE(GLFW_KEY_N, "N", next_object, "the handles go to the next object"),
-    {.code = GLFW_KEY_ESCAPE, .name = "Esc", .when = WITH_TOOL, .act = escape, .help = "with handles: lets go without a change; puts them away"},
-    SCENE(GLFW_KEY_X, "X", save_picture,
-          "saves the picture as a PNG in the working directory (with Shift: the window)"),
+    {.code = GLFW_KEY_ESCAPE,
+     .name = "Esc",
+     .when = WITH_TOOL,
+     .act = escape,
+     .help = "with handles: lets go without a change; puts them away"},
+    SCENE(GLFW_KEY_X, "X", save_picture, "saves the picture as a PNG in the working directory (with Shift: the window)"),
     SCENE(GLFW_KEY_V, "V", record, "records a film, and ends it"),
     SCENE(GLFW_KEY_J, "J", record_all, "records all that is done, for `skein verify`, and ends it"),
     SCENE(GLFW_KEY_O, "O", save_mesh, "saves the bodies' meshes as OBJ"),
@@ -311,7 +325,8 @@ static const viewer_key keys[] = {
     PANEL(GLFW_KEY_F2, "F2", VIEWER_PANEL_GALLERY, "the gallery of scenes"),
     PANEL(GLFW_KEY_F3, "F3", VIEWER_PANEL_PLOTS, "plots of energy, stretch, contacts and time"),
     PANEL(GLFW_KEY_F4, "F4", VIEWER_PANEL_LOG, "the log"),
-    PANEL(GLFW_KEY_F6, "F6", VIEWER_PANEL_LESSON, "a constraint, looked into: its value, its derivatives, its formula step by step"),
+    PANEL(GLFW_KEY_F6, "F6", VIEWER_PANEL_LESSON,
+          "a constraint, looked into: its value, its derivatives, its formula step by step"),
     {.code = GLFW_KEY_F7, .name = "F7", .when = ALWAYS, .act = change_theme, .help = "the light theme, and the dark one"},
     PANEL(GLFW_KEY_TAB, "Tab", VIEWER_PANEL_SIDE, "the panel at the side"),
     {.code = GLFW_KEY_ENTER,

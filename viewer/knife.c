@@ -47,8 +47,10 @@ void viewer_knife_go_on(viewer_stage *stage) {
         reach(stage, stage->x, stage->y, far, blade[2]);
         for (size_t b = 0; b < skein_object_count(world, SKEIN_BODY); b++) {
             size_t count = 0;
-            skein_status status = skein_cut(world, skein_object_at(world, SKEIN_BODY, b), (const double(*)[3])blade, &count);
-            if (status == SKEIN_ERROR_MEMORY) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
+            skein_status status =
+                skein_cut(world, skein_object_at(world, SKEIN_BODY, b), (const double(*)[3])blade, &count);
+            if (status == SKEIN_ERROR_MEMORY)
+                viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
             if (!status && s == 0) knife->faces += count; // else it is no sheet
         }
     }

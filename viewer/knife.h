@@ -13,10 +13,10 @@
 typedef struct viewer_stage viewer_stage;
 
 typedef struct viewer_knife {
-    bool cuts; /* a stroke is under way */
-    size_t side; /* that it began on */
+    bool cuts;      /* a stroke is under way */
+    size_t side;    /* that it began on */
     double last[2]; /* where it was, pixels */
-    size_t faces; /* that it has taken from the first world */
+    size_t faces;   /* that it has taken from the first world */
 } viewer_knife;
 
 void viewer_knife_begin(viewer_stage *stage);

@@ -127,7 +127,8 @@ static void take_names(viewer_lesson *lesson, const skein_world *world, const sk
 static void take_operations(viewer_lesson *lesson, skein_world *world) {
     size_t count = 0;
     lesson->operation_count = 0;
-    if (lesson->many || skein_constraint_operations(world, lesson->handle, lesson->index, NULL, NULL, 0, &count)) return;
+    if (lesson->many || skein_constraint_operations(world, lesson->handle, lesson->index, NULL, NULL, 0, &count))
+        return;
     lesson->too_long = count > MOST_OPERATIONS;
     if (lesson->too_long) count = MOST_OPERATIONS;
     if (!count || !viewer_lesson_reserve(lesson, count, 3 * count * lesson->particle_count)) return;
@@ -173,7 +174,8 @@ void viewer_lesson_refresh(viewer_stage *stage) {
         return;
     }
     // a step that was gone back over is not the last any more
-    if (lesson->after.taken && lesson->after.time != lesson->now.time) lesson->before.taken = lesson->after.taken = false;
+    if (lesson->after.taken && lesson->after.time != lesson->now.time)
+        lesson->before.taken = lesson->after.taken = false;
     take_names(lesson, world, &value);
     take_operations(lesson, world);
     find_place(stage);

@@ -29,8 +29,8 @@ typedef struct viewer_lesson {
     size_t place;
     skein_handle handle;
     char name[96], label[64], text[VIEWER_LESSON_TEXT];
-    char fault[400];          /* of the last text, which was not taken; "" */
-    const skein_field *field; /* that the text is of; NULL: it cannot be changed here */
+    char fault[400];                          /* of the last text, which was not taken; "" */
+    const skein_field *field;                 /* that the text is of; NULL: it cannot be changed here */
     bool is_energy, one_sided, guarded, many; /* many: of more particles than are shown */
     size_t particle_count;                    /* that are shown */
     uint32_t particle[VIEWER_LESSON_PARTICLES];

@@ -21,8 +21,9 @@ static const viewer_piece pieces[] = {
      "{'type':'rope','from':[$w,$y,$z],'to':[$e,$y,$z],'pins':'first'}"},
     {"flock", "256 loose particles: they fly by rules among the forces", SKEIN_BODY, false, false,
      "{'type':'flock','count':256,'position':[$x,$y,$z],'spread':[$s,$s,$s],'speed':1}"},
-    {"mesh", "a sheet of a mesh from a file, OBJ, PLY, STL, glTF or OFF; or a solid of tetrahedra, .node with .ele beside it", SKEIN_BODY,
-     false, true, NULL},
+    {"mesh",
+     "a sheet of a mesh from a file, OBJ, PLY, STL, glTF or OFF; or a solid of tetrahedra, .node with .ele beside it",
+     SKEIN_BODY, false, true, NULL},
     {"plane", "flat ground, in the place of the first collider", SKEIN_COLLIDER, true, false,
      "{'type':'plane','name':'ground','offset':$g}"},
     {"slope", "ground that falls by 20 degrees", SKEIN_COLLIDER, true, false,
@@ -289,8 +290,8 @@ static bool write_mesh(viewer_stage *stage, const skein_world *world, const skei
     bool good = positions != NULL;
     for (size_t v = 0; v < s->vertex_count && good; v++)
         good = !skein_positions_copy(world, s->particle_of_vertex[v], 1, positions + 3 * v);
-    skein_mesh mesh = {positions, s->vertex_count, s->face_sizes, s->face_count, s->face_vertices,
-                       s->face_vertex_count};
+    skein_mesh mesh = {positions,     s->vertex_count,  s->face_sizes,
+                       s->face_count, s->face_vertices, s->face_vertex_count};
     if (good) good = !io_obj_write(path, &mesh, SKEIN_NORMALS_ANGLE, &error);
     if (!good) viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", path, error.message);
     free(positions);
@@ -315,7 +316,8 @@ void viewer_to_mesh(viewer_stage *stage, const viewer_request *request) {
                  "{\"mesh\": \"%s\", \"pins\": \"%s\", \"grid\": null, \"size\": null, \"position\": null, "
                  "\"rotation\": null, \"scale\": null}",
                  whole, pins);
-        snprintf(words, sizeof words, "body %zu is now the mesh %s: edit it, or take it elsewhere", request->index, path);
+        snprintf(words, sizeof words, "body %zu is now the mesh %s: edit it, or take it elsewhere", request->index,
+                 path);
     }
     close_present(&p);
     good = members && change_members(stage, SKEIN_BODY, request->index, members, words);

@@ -5,8 +5,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "viewer/flock.h"
 #include "io/own_kinds.h"
+#include "viewer/flock.h"
 #include "viewer/stage.h"
 
 /* Measures are taken at most so often, and for at most so large a part of the time. */
@@ -101,7 +101,8 @@ static void add_fields(viewer_side *side, const skein_world *world, skein_handle
                        const skein_field *fields, size_t count) {
     for (size_t f = 0; f < count; f++) {
         skein_value value;
-        if (!skein_kind_takes(skein_object_kind(world, handle), fields[f].name)) continue; // setting it would be refused
+        if (!skein_kind_takes(skein_object_kind(world, handle), fields[f].name))
+            continue; // setting it would be refused
         if (skein_get(world, handle, fields[f].name, &value)) continue;
         const skein_field *field = listed ? field_to_keep(side, listed, &fields[f]) : &fields[f];
         if (field) add_entry(side, field, value, !skein_field_is_live(world, handle, field->name));
@@ -115,7 +116,8 @@ static bool is_instead_of(const skein_field *field, const char *name) {
     at += strlen("instead of ");
     if (!strncmp(at, "the ", 4)) at += 4;
     size_t length = strlen(name);
-    return !strncmp(at, name, length) && !strchr("abcdefghijklmnopqrstuvwxyz_.0123456789", at[length] ? at[length] : ' ');
+    return !strncmp(at, name, length) &&
+           !strchr("abcdefghijklmnopqrstuvwxyz_.0123456789", at[length] ? at[length] : ' ');
 }
 
 /* Fields that count for nothing, because another one is given instead of them. */
@@ -133,8 +135,7 @@ static void mark_ignored(viewer_side *side, const viewer_object *object) {
 static void add_objects(viewer_side *side, const skein_world *world, skein_category category) {
     for (size_t i = 0; i < skein_object_count(world, category); i++) {
         skein_handle handle = skein_object_at(world, category, i);
-        const skein_kind *kind = skein_object_kind(world, handle),
-                         *listed = io_kind_find(category, kind->name, NULL);
+        const skein_kind *kind = skein_object_kind(world, handle), *listed = io_kind_find(category, kind->name, NULL);
         skein_value name = {0, {0, 0, 0}, NULL};
         size_t common_count;
         const skein_field *common = skein_common_fields(category, &common_count);
@@ -187,8 +188,8 @@ static void make_room(viewer_plots *plots, double time) {
     else plots->next = last, plots->count--;
 }
 
-static void add_sample(viewer_plots *plots, double time, const skein_statistics *s, const skein_order *flock, double step_ms,
-                       double draw_ms) {
+static void add_sample(viewer_plots *plots, double time, const skein_statistics *s, const skein_order *flock,
+                       double step_ms, double draw_ms) {
     const double values[VIEWER_QUANTITY_COUNT] = {
         [VIEWER_KINETIC] = s->kinetic_energy,
         [VIEWER_POTENTIAL] = s->potential_energy,
@@ -223,7 +224,8 @@ void viewer_measure(viewer_stage *stage) {
         pthread_mutex_lock(&stage->exchange->lock);
         side->flock = flock;
         side->statistics = statistics;
-        add_sample(&side->plots, skein_world_time(stage->sides[s].world), &statistics, flock ? &order : NULL, stage->step_ms, stage->draw_ms);
+        add_sample(&side->plots, skein_world_time(stage->sides[s].world), &statistics, flock ? &order : NULL,
+                   stage->step_ms, stage->draw_ms);
         pthread_mutex_unlock(&stage->exchange->lock);
     }
     double took = viewer_seconds() - now;
@@ -240,7 +242,8 @@ static void mirror_time(viewer_stage *stage, viewer_shown *shown) {
     shown->time = skein_world_time(player->world);
     shown->needed = player->needed;
     shown->changes = 0;
-    for (size_t i = player->changes.given; i < player->changes.done; i++) shown->changes += !player->changes.data[i].joined;
+    for (size_t i = player->changes.given; i < player->changes.done; i++)
+        shown->changes += !player->changes.data[i].joined;
     const char *name = player->settings.name[0] ? player->settings.name : player->path;
     snprintf(shown->title, sizeof shown->title, "Skein: %.160s%s", name, stage->paused ? " (paused)" : "");
     snprintf(shown->about, sizeof shown->about, "%s", player->settings.description);

@@ -69,13 +69,15 @@ void viewer_offer_forget(viewer_stage *stage) {
     stage->offer.any = false;
 }
 
-void viewer_offer_look(viewer_stage *stage, skein_category category, size_t index, const skein_field *field, const char *text) {
+void viewer_offer_look(viewer_stage *stage, skein_category category, size_t index, const skein_field *field,
+                       const char *text) {
     viewer_offer *offer = &stage->offer;
     const skein_world *world = stage->side_count ? stage->sides[0].world : NULL;
     const skein_kind *kind = world ? skein_object_kind(world, skein_object_at(world, category, index)) : NULL;
     const skein_kind *listed = kind ? io_kind_find(category, kind->name, NULL) : NULL;
     viewer_offer_forget(stage);
-    bool takes = listed && skein_field_find(listed, "parameters.*", NULL) && skein_field_find(listed, field->name, NULL);
+    bool takes =
+        listed && skein_field_find(listed, "parameters.*", NULL) && skein_field_find(listed, field->name, NULL);
     if (!takes || strlen(text) >= sizeof offer->text) return;
     *offer = (viewer_offer){.category = category, .index = index};
     snprintf(offer->field, sizeof offer->field, "%s", field->name);
@@ -92,7 +94,8 @@ void viewer_offer_take(viewer_stage *stage) {
     char *sets[VIEWER_OFFER_NAMES + 1] = {NULL};
     const char *list = viewer_list_of(offer.category);
     const skein_world *world = stage->side_count ? stage->sides[0].world : NULL;
-    const skein_kind *kind = world ? skein_object_kind(world, skein_object_at(world, offer.category, offer.index)) : NULL;
+    const skein_kind *kind =
+        world ? skein_object_kind(world, skein_object_at(world, offer.category, offer.index)) : NULL;
     const skein_field *field = kind && offer.any ? skein_field_find(kind, offer.field, NULL) : NULL;
     if (!field || !offer.name_count) return;
     skein_value value = skein_text(offer.text);

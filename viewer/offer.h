@@ -24,7 +24,8 @@ typedef struct viewer_offer {
 } viewer_offer;
 
 /* Looks at a text that an object's field did not take. */
-void viewer_offer_look(viewer_stage *stage, skein_category category, size_t index, const skein_field *field, const char *text);
+void viewer_offer_look(viewer_stage *stage, skein_category category, size_t index, const skein_field *field,
+                       const char *text);
 /* Makes the parameters, each 1, and the object anew with them and the text, where the scene stands: one change. */
 void viewer_offer_take(viewer_stage *stage);
 void viewer_offer_forget(viewer_stage *stage);

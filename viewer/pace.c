@@ -10,7 +10,8 @@ static const double most_ms = 50, easy_ms = 38;
 static const double slow_speed = 0.9, slow_rate = 12;
 
 /* One sample a pixel takes half of what four take; the rest goes with the pixels. */
-static const viewer_detail details[VIEWER_DETAILS] = {{1, true}, {1, false}, {0.75, false}, {0.5, false}, {0.375, false}};
+static const viewer_detail details[VIEWER_DETAILS] = {
+    {1, true}, {1, false}, {0.75, false}, {0.5, false}, {0.375, false}};
 
 /* ---- Detail ---- */
 
@@ -62,10 +63,11 @@ void viewer_slowness_text(viewer_slowness slowness, const viewer_pace *pace, cha
     // the first picture takes its time: there are no numbers to tell yet
     if (slowness != VIEWER_SLOW_STEPS && !pace->pictures) return;
     if (slowness == VIEWER_SLOW_STEPS)
-        snprintf(text, size,
-                 "the steps are slow: it goes at %.0f %% of real time; a step takes %.3g ms and may take %.3g. A coarser "
-                 "body or fewer substeps help",
-                 speed, step_ms, there_are);
+        snprintf(
+            text, size,
+            "the steps are slow: it goes at %.0f %% of real time; a step takes %.3g ms and may take %.3g. A coarser "
+            "body or fewer substeps help",
+            speed, step_ms, there_are);
     else if (slowness == VIEWER_SLOW_DRAWING)
         snprintf(text, size,
                  "the drawing is slow: %.0f pictures a second, %.0f ms each; the steps keep up. A smaller window, or a "

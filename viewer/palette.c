@@ -124,7 +124,8 @@ static void show_tools(viewer_panels *panels, const viewer_object *object) {
         if (!first) widgets_same_line();
         first = false;
         if (!button(panels, object, rows[i].title, rows[i].help)) continue;
-        viewer_request request = {.kind = VIEWER_TOOL, .category = object->category, .index = object->index, .code = (int)rows[i].tool};
+        viewer_request request = {
+            .kind = VIEWER_TOOL, .category = object->category, .index = object->index, .code = (int)rows[i].tool};
         viewer_ask(panels->exchange, &request);
     }
 }
@@ -134,8 +135,8 @@ void viewer_show_deeds(viewer_panels *panels, const viewer_object *object) {
     if (button(panels, object, "duplicate", "one more, beside it")) ask_about(panels, VIEWER_DUPLICATE, object, "");
     widgets_same_line();
     if (button(panels, object, "remove", "undo brings it back")) ask_about(panels, VIEWER_REMOVE, object, object->name);
-    bool grid = object->category == SKEIN_BODY && has_field(panels, object, "mesh", 0) &&
-                has_field(panels, object, "grid", 2);
+    bool grid =
+        object->category == SKEIN_BODY && has_field(panels, object, "mesh", 0) && has_field(panels, object, "grid", 2);
     if (grid) {
         widgets_same_line();
         if (button(panels, object, "to mesh", "its grid becomes a mesh in a file, to be edited elsewhere"))

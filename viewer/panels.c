@@ -146,8 +146,7 @@ static void show_compare(viewer_panels *panels, const viewer_shown *shown) {
         snprintf(words + length, sizeof words - length, "%s%s", k ? "|" : "", io_kind_at(SKEIN_METHOD, k)->name);
     }
     if (widgets_choice("other method", words, &chosen) && chosen >= 0) {
-        snprintf(request.text, sizeof request.text, "method.type=%s",
-                 io_kind_at(SKEIN_METHOD, (size_t)chosen)->name);
+        snprintf(request.text, sizeof request.text, "method.type=%s", io_kind_at(SKEIN_METHOD, (size_t)chosen)->name);
         viewer_ask(panels->exchange, &request);
     }
     viewer_place_control(panels, "other method");
@@ -357,6 +356,8 @@ void viewer_panels_show(viewer_panels *panels, int width, int height) {
     if (shown->panel[VIEWER_PANEL_KEYS]) show_keys(panels, w, h);
     // a picture without panels is a picture: no note in it, unless something is wrong
     if (shown->has_scene && !shown->panel[VIEWER_PANEL_GALLERY]) show_labels(panels, left, w);
-    if (has_side && !shown->panel[VIEWER_PANEL_GALLERY] && !shown->panel[VIEWER_PANEL_LESSON]) show_about(shown, left, w);
-    if (has_side || shown->recording || shown->alarm) show_message(panels, left, w, above - viewer_lesson_height(shown, above));
+    if (has_side && !shown->panel[VIEWER_PANEL_GALLERY] && !shown->panel[VIEWER_PANEL_LESSON])
+        show_about(shown, left, w);
+    if (has_side || shown->recording || shown->alarm)
+        show_message(panels, left, w, above - viewer_lesson_height(shown, above));
 }

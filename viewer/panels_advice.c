@@ -19,8 +19,8 @@ void viewer_show_advice(viewer_panels *panels) {
         bool pressed = widgets_button(title);
         viewer_place_control(panels, "take substeps");
         if (!pressed) continue;
-        viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_METHOD, .field = field,
-                                  .value = skein_number(shown->needed)};
+        viewer_request request = {
+            .kind = VIEWER_SET, .category = SKEIN_METHOD, .field = field, .value = skein_number(shown->needed)};
         viewer_ask(panels->exchange, &request);
     }
 }
@@ -35,7 +35,11 @@ void viewer_show_offer(viewer_panels *panels, const char *place) {
     widgets_marked(offer->line, offer->column, offer->width);
     for (size_t i = 0; i < offer->name_count; i++) {
         size_t length = strlen(title);
-        snprintf(title + length, sizeof title - length, "%s %.40s", i ? "," : offer->name_count > 1 ? "s" : "", offer->names[i]);
+        snprintf(title + length, sizeof title - length, "%s %.40s",
+                 i                       ? ","
+                 : offer->name_count > 1 ? "s"
+                                         : "",
+                 offer->names[i]);
     }
     if (offer->name_count) {
         request.down = widgets_button(title);

@@ -4,8 +4,8 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include "viewer/palette.h"
 #include "io/own_kinds.h"
+#include "viewer/palette.h"
 #include "viewer/stage.h"
 
 /* A range that is wider than so many steps is no use as a slider: it is then measured by the default. */
@@ -109,7 +109,8 @@ static bool show_number(const viewer_entry *entry, const char *title, skein_valu
         snprintf(format, sizeof format, "%%.4g %.20s", field->unit);
     // several numbers beside each other have no room for it
     bool tells = field->unit[0] && value->count > 1;
-    snprintf(named, sizeof named, "%.60s%s%.20s%s", title, tells ? " (" : "", tells ? field->unit : "", tells ? ")" : "");
+    snprintf(named, sizeof named, "%.60s%s%.20s%s", title, tells ? " (" : "", tells ? field->unit : "",
+             tells ? ")" : "");
     if (!widgets_numbers(named, given, value->count, r.least, r.most, r.logarithmic, whole, format)) return false;
     memcpy(value->number, given, sizeof given);
     return true;

@@ -19,7 +19,8 @@ static void show_stroke(const viewer_stroke *stroke, const viewer_colours *colou
     uint32_t colour = colour_of(colours, stroke->paint);
     for (int i = 0; i < 4; i++) at[i][0] = stroke->at[i][0] + left, at[i][1] = stroke->at[i][1];
     if (stroke->shape == STROKE_LINE) widgets_stroke(at[0], at[1], stroke->width, colour, stroke->opacity);
-    else if (stroke->shape != STROKE_CIRCLE) widgets_fill(at, stroke->shape == STROKE_TRIANGLE ? 3 : 4, colour, stroke->opacity);
+    else if (stroke->shape != STROKE_CIRCLE)
+        widgets_fill(at, stroke->shape == STROKE_TRIANGLE ? 3 : 4, colour, stroke->opacity);
     else widgets_circle(at[0], stroke->at[1][0], stroke->width, colour, stroke->opacity);
 }
 

@@ -37,7 +37,9 @@ static void show_choice(viewer_panels *panels, const viewer_lesson *lesson) {
     }
     bool part = strcmp(lesson->name, lesson->label) != 0;
     snprintf(line, sizeof line, "%s%s%s%s%s", lesson->name, part ? ", " : "", part ? lesson->label : "",
-             lesson->is_energy ? ": an energy" : lesson->one_sided ? ": at least 0" : "",
+             lesson->is_energy   ? ": an energy"
+             : lesson->one_sided ? ": at least 0"
+                                 : "",
              lesson->guarded ? " (guarded here)" : "");
     widgets_text(line);
     if (lesson->count < 2) return;
@@ -127,7 +129,8 @@ static void show_tape(viewer_panels *panels, const viewer_lesson *lesson) {
     size_t last = viewer_operation_last(lesson), before = panels->lesson_step;
     char line[160];
     if (!lesson->operation_count) {
-        if (lesson->many) widgets_wrapped("A whole surface is a sum over its triangles: there is no one formula.", false);
+        if (lesson->many)
+            widgets_wrapped("A whole surface is a sum over its triangles: there is no one formula.", false);
         return;
     }
     if (button(panels, "start##tape", "lesson start", "before the first operation")) panels->lesson_step = 0;
@@ -193,7 +196,8 @@ void viewer_show_lesson(viewer_panels *panels, double left, double wide, double 
     bool open = true;
     if (widgets_panel("Lesson", WIDGETS_DOCKED, left, tall - height, wide - left, height, &open)) {
         if (!lesson->any) {
-            widgets_wrapped("There is no constraint here: no formula, no spring, no part of a body that has one.", false);
+            widgets_wrapped("There is no constraint here: no formula, no spring, no part of a body that has one.",
+                            false);
         } else {
             show_choice(panels, lesson);
             show_looks(lesson);

@@ -31,8 +31,8 @@ static void plot(const viewer_shown *shown, double width, const char *title, con
             series[lines] = shown->sides[s].plots.value[quantities[q]];
             words[lines++] = shown->side_count > 1 ? (s ? shown->sides[1].name : shown->sides[0].name) : names[q];
         }
-    widgets_chart chart = {title, series, words, lines, shown->sides[0].plots.time, first, length, VIEWER_SAMPLES,
-                           shown->side_count > 1};
+    widgets_chart chart = {
+        title, series, words, lines, shown->sides[0].plots.time, first, length, VIEWER_SAMPLES, shown->side_count > 1};
     widgets_chart_show(&chart, width, widgets_height());
     widgets_same_line();
 }

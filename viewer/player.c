@@ -101,8 +101,8 @@ static void take_to_card(const viewer_player *player, viewer_device device) {
     skein_world *world = player->world;
     if (device == VIEWER_ON_PROCESSOR) return;
     if (skein_world_device_set(world, SKEIN_DEVICE_CURRENT_GL) || skein_world_explain(world, player->dt, NULL, NULL)) {
-        say_line(player, device == VIEWER_ON_CARD ? SKEIN_LOG_WARNING : SKEIN_LOG_INFO, "runs on the processor: ",
-                 skein_world_error(world)->message);
+        say_line(player, device == VIEWER_ON_CARD ? SKEIN_LOG_WARNING : SKEIN_LOG_INFO,
+                 "runs on the processor: ", skein_world_error(world)->message);
         skein_world_device_set(world, SKEIN_DEVICE_CPU);
         return;
     }

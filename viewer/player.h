@@ -29,16 +29,16 @@ typedef struct viewer_player {
     skein_world *world;
     render_view view; /* the scene's, as changed since; its texts are the scene's, but for the followed body's */
     char follow[PLAYER_NAME]; /* that body's name, once it was changed */
-    double opened; /* s: when, which tells its world from others */
-    int steps, step; /* a frame; taken of the present one */
-    double dt;       /* of a step */
+    double opened;            /* s: when, which tells its world from others */
+    int steps, step;          /* a frame; taken of the present one */
+    double dt;                /* of a step */
     uint64_t frame;
     viewer_history history;
     unsigned char *pins; /* which particles were held when it was built */
     double *velocities;  /* and what they had then, which the library's reset takes from them; m/s, three each */
     viewer_reporter reporter;
-    bool failed; /* a step failed: said once */
-    bool grown; /* an object has come or gone since it was built: `scene` does not have it */
+    bool failed;   /* a step failed: said once */
+    bool grown;    /* an object has come or gone since it was built: `scene` does not have it */
     double needed; /* substeps, where there are too few to be stable; else 0 */
 } viewer_player;
 

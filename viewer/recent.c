@@ -43,7 +43,8 @@ void viewer_recent_read(viewer_recent *recent) {
 static bool write_list(const viewer_recent *recent, skein_error *error) {
     char path[VIEWER_TEXT];
     if (!find_list(path, true)) {
-        io_error_set(error, SKEIN_ERROR_FILE, "recent scenes", "there is no folder to keep them in: %s", strerror(errno));
+        io_error_set(error, SKEIN_ERROR_FILE, "recent scenes", "there is no folder to keep them in: %s",
+                     strerror(errno));
         return false;
     }
     io_output *output = io_output_open(path, error);

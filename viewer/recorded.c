@@ -82,8 +82,8 @@ static void end_side(viewer_stage *stage, size_t side, bool by_hand) {
     if (status) {
         viewer_say(stage, SKEIN_LOG_WARNING, "%s: %s", r->path, error.message);
     } else if (keep) {
-        viewer_note(stage, "saved %.140s: %" PRIu64 " steps (%.1f MB); `skein verify` does them again", r->path, r->steps,
-                    1e-6 * (double)size);
+        viewer_note(stage, "saved %.140s: %" PRIu64 " steps (%.1f MB); `skein verify` does them again", r->path,
+                    r->steps, 1e-6 * (double)size);
         viewer_event(stage->events, "recorded %s steps=%" PRIu64, r->path, r->steps);
         r->part++;
     }

@@ -75,7 +75,8 @@ bool viewer_spot_find(viewer_spot *spot, const skein_world *world, skein_categor
     *spot = (viewer_spot){.factor = 1};
     if (!world || index >= skein_object_count(world, category)) return false;
     skein_handle handle = skein_object_at(world, category, index);
-    const skein_kind *own = skein_object_kind(world, handle), *kind = own ? io_kind_find(category, own->name, NULL) : NULL;
+    const skein_kind *own = skein_object_kind(world, handle),
+                     *kind = own ? io_kind_find(category, own->name, NULL) : NULL;
     if (!kind) kind = own; // a program's own
     if (!kind) return false;
     if (!take(world, handle, kind, "position", SKEIN_FIELD_VEC3, &spot->point, spot->at, 3))
@@ -95,7 +96,9 @@ bool viewer_spot_find(viewer_spot *spot, const skein_world *world, skein_categor
     leave_out_what_is_ignored(spot, world, handle, kind);
     const skein_field *ends = spot->point ? spot->point : spot->from ? spot->from : spot->offset;
     const skein_field *fields[3] = {ends, spot->turn ? spot->turn : ends,
-                                    spot->size ? spot->size : spot->uniform ? spot->uniform : ends};
+                                    spot->size      ? spot->size
+                                    : spot->uniform ? spot->uniform
+                                                    : ends};
     for (int t = 0; t < 3; t++) spot->live[t] = skein_field_is_live(world, handle, fields[t]->name);
     return true;
 }
@@ -144,7 +147,8 @@ void viewer_spot_gizmo(const viewer_spot *spot, viewer_tool tool, const double t
 
 /* ---- What was done ---- */
 
-void viewer_spot_carry(const viewer_spot *spot, const viewer_gizmo *gizmo, int part, const double by[3], double place[3]) {
+void viewer_spot_carry(const viewer_spot *spot, const viewer_gizmo *gizmo, int part, const double by[3],
+                       double place[3]) {
     double off[3], moved[3] = {0, 0, 0};
     for (int k = 0; k < 3; k++) off[k] = place[k] - gizmo->origin[k];
     if (gizmo->tool == VIEWER_TURNS) turn_about(gizmo->axes[part % 3], by[0] * degree, off);
@@ -230,6 +234,7 @@ size_t viewer_spot_apply(const viewer_spot *spot, const viewer_gizmo *gizmo, int
         changes[0] = (viewer_spot_change){spot->point, skein_vector(place[0], place[1], place[2])};
         return 1;
     }
-    changes[0] = (viewer_spot_change){spot->offset, skein_number(round_to(spot->off + render_dot(spot->up, by), pixel))};
+    changes[0] =
+        (viewer_spot_change){spot->offset, skein_number(round_to(spot->off + render_dot(spot->up, by), pixel))};
     return 1;
 }

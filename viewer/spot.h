@@ -13,9 +13,10 @@
 #include "viewer/gizmo.h"
 
 typedef struct viewer_spot {
-    const skein_field *point, *from, *to, *normal, *offset, *turn, *size, *uniform; /* of the tables; NULL: there is none */
-    double at[3], ends[2][3], up[3], off, degrees[3], extent[3], factor;            /* their values; up is a unit vector */
-    bool flat; /* its size is along x and z */
+    const skein_field *point, *from, *to, *normal, *offset, *turn, *size,
+        *uniform;                                                        /* of the tables; NULL: there is none */
+    double at[3], ends[2][3], up[3], off, degrees[3], extent[3], factor; /* their values; up is a unit vector */
+    bool flat;                                                           /* its size is along x and z */
     bool live[3]; /* whether what moves, turns or sizes it (a viewer_tool less 1) is set in place */
 } viewer_spot;
 
@@ -38,6 +39,7 @@ void viewer_spot_gizmo(const viewer_spot *spot, viewer_tool tool, const double t
 size_t viewer_spot_apply(const viewer_spot *spot, const viewer_gizmo *gizmo, int part, const double by[3], double pixel,
                          viewer_spot_change changes[2]);
 /* Where a point that belongs to it comes to. */
-void viewer_spot_carry(const viewer_spot *spot, const viewer_gizmo *gizmo, int part, const double by[3], double place[3]);
+void viewer_spot_carry(const viewer_spot *spot, const viewer_gizmo *gizmo, int part, const double by[3],
+                       double place[3]);
 
 #endif

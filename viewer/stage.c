@@ -40,7 +40,8 @@ void viewer_say(viewer_stage *stage, skein_log_level level, const char *format, 
     log_line(stage, level, text);
     viewer_event(stage->events, "%s %s", level == SKEIN_LOG_WARNING ? "warning" : "log", text);
     fprintf(stderr, "skein: %s%s\n", level == SKEIN_LOG_WARNING ? "warning: " : "", text);
-    if (level == SKEIN_LOG_WARNING) snprintf(stage->message, sizeof stage->message, "%.*s", 239, text), stage->alarm = true;
+    if (level == SKEIN_LOG_WARNING)
+        snprintf(stage->message, sizeof stage->message, "%.*s", 239, text), stage->alarm = true;
 }
 
 void viewer_note(viewer_stage *stage, const char *format, ...) {
@@ -95,7 +96,8 @@ static bool is_finite(viewer_stage *stage) {
     bool look = now - stage->looked > judge_every;
     if (look) stage->looked = now;
     for (size_t s = 0; s < stage->side_count; s++)
-        if ((look || !viewer_player_on_card(&stage->sides[s])) && !viewer_is_finite(stage->sides[s].world)) return false;
+        if ((look || !viewer_player_on_card(&stage->sides[s])) && !viewer_is_finite(stage->sides[s].world))
+            return false;
     return true;
 }
 
@@ -164,8 +166,8 @@ static void judge_speed(viewer_stage *stage, double now) {
     if (tell) viewer_note(stage, "%s", text);
     stage->told_slow |= tell;
     stage->slow = slow;
-    viewer_event(stage->events, "pace speed=%.3f pictures=%.3g step_ms=%.4g draw_ms=%.4g level=%d slow=%s", stage->speed,
-                 (double)stage->pace.pictures / stage->pace.real,
+    viewer_event(stage->events, "pace speed=%.3f pictures=%.3g step_ms=%.4g draw_ms=%.4g level=%d slow=%s",
+                 stage->speed, (double)stage->pace.pictures / stage->pace.real,
                  1e3 * stage->pace.worked / fmax((double)stage->pace.steps, 1), stage->draw_ms, stage->level,
                  viewer_slowness_word(stage->slow));
     stage->pace = (viewer_pace){0};

@@ -92,7 +92,7 @@ typedef struct viewer_stage {
 
     /* the pointer */
     double x, y, pressed_x, pressed_y;
-    bool over; /* the picture */
+    bool over;  /* the picture */
     int button; /* that is down; -1: none */
     int button_mods;
 
@@ -109,14 +109,14 @@ typedef struct viewer_stage {
     bool sharp;                            /* the last picture had all detail */
     double step_ms, draw_ms;
     bool has_drawn; /* a first picture, whose time is not counted */
-    bool in_parts; /* the next picture is drawn in parts: the last took long, or nobody knows yet */
+    bool in_parts;  /* the next picture is drawn in parts: the last took long, or nobody knows yet */
 
     /* files */
     film *film;
     char film_path[64];
     uint64_t film_frames;
     viewer_recorded recorded[VIEWER_SIDES];
-    bool records;                    /* what is done, into this file and its parts */
+    bool records; /* what is done, into this file and its parts */
     char record_path[PLAYER_PATH];
     double watched; /* when the scene's file was looked at */
     struct {

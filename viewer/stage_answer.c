@@ -138,7 +138,8 @@ static void point(viewer_stage *stage, const viewer_request *r) {
     if (!stage->side_count) return;
     if (stage->button < 0) stage->over = !r->down;
     if (stage->button < 0 && stage->handles.tool) viewer_handles_hover(stage, stage->over);
-    if (stage->button < 0 && (r->down || stage->handles.tool)) viewer_hunt_rest(stage); // a hand with a tool frightens nobody
+    if (stage->button < 0 && (r->down || stage->handles.tool))
+        viewer_hunt_rest(stage); // a hand with a tool frightens nobody
     else if (stage->button < 0) viewer_hunt_lead(stage);
     if (stage->button >= 0) drag(stage, dx, dy);
 }

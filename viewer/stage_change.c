@@ -1,7 +1,7 @@
 /* What the user changes in the stage's scenes: methods, fields, rules. Each change is done at once where it can be, else
  * by building the scene anew with it, and kept (changes.h), so that it can be undone, done again and saved. */
-#include <string.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "io/groups.h"
 #include "io/own_kinds.h"
@@ -150,7 +150,8 @@ static bool set_live(viewer_stage *stage, size_t side, const viewer_value *to) {
 static bool change_live(viewer_stage *stage, size_t side, const viewer_value *to, const char *set) {
     const viewer_player *player = &stage->sides[side];
     viewer_value before = *to;
-    if (to->category == SKEIN_FORCE) viewer_hunt_leave(stage, side, to->index); // what the scene has is what it was before
+    if (to->category == SKEIN_FORCE)
+        viewer_hunt_leave(stage, side, to->index); // what the scene has is what it was before
     if (to->category == SKEIN_VIEW) before.value = viewer_plain_value(to->field, &player->view);
     else if (skein_get(player->world, skein_object_at(player->world, to->category, to->index), to->field->name,
                        &before.value))
@@ -189,7 +190,9 @@ static bool build_with_all(viewer_stage *stage, const char *const *sets, size_t 
     if (good && lost) changes.data[changes.done - 1].joined = true;
     good = good && viewer_stage_reopen(stage, &changes, stays);
     viewer_changes_free(&changes);
-    if (good && lost) viewer_note(stage, "built anew with %.120s; the pins painted on it meant other particles: they are gone", sets[0]);
+    if (good && lost)
+        viewer_note(stage, "built anew with %.120s; the pins painted on it meant other particles: they are gone",
+                    sets[0]);
     else if (good) viewer_note(stage, "built anew with %s", sets[0]);
     return good;
 }
@@ -236,7 +239,8 @@ void viewer_stage_set(viewer_stage *stage, const viewer_request *r) {
     bool changed =
         is_live(stage, side, &to) ? change_live(stage, side, &to, set) : set && build_with_all(stage, &one, 1, stays);
     free(set);
-    if (!changed && r->field->type == SKEIN_FIELD_TEXT) viewer_offer_look(stage, r->category, r->index, r->field, to.value.text);
+    if (!changed && r->field->type == SKEIN_FIELD_TEXT)
+        viewer_offer_look(stage, r->category, r->index, r->field, to.value.text);
     else if (r->field->type == SKEIN_FIELD_TEXT) viewer_offer_forget(stage);
     if (changed && !r->down) viewer_changes_close(&stage->sides[side].changes);
     tell_value(stage, side, &to, changed);
@@ -303,8 +307,8 @@ void viewer_stage_follow_body(viewer_stage *stage, size_t body) {
     viewer_request request = {.kind = VIEWER_SET, .category = SKEIN_VIEW, .field = field, .value = skein_text(NULL)};
     if (!stage->side_count || body >= skein_object_count(player->world, SKEIN_BODY)) return;
     bool already = stage->camera.follows && render_body_find(player->world, player->view.camera.follow, &followed);
-    bool named = !skein_get(player->world, skein_object_at(player->world, SKEIN_BODY, body), "name", &name) && name.text &&
-                 render_body_find(player->world, name.text, &found) && found == body;
+    bool named = !skein_get(player->world, skein_object_at(player->world, SKEIN_BODY, body), "name", &name) &&
+                 name.text && render_body_find(player->world, name.text, &found) && found == body;
     if (already && followed == body) request.text[0] = 0;
     else if (named) snprintf(request.text, sizeof request.text, "%s", name.text);
     else snprintf(request.text, sizeof request.text, "%zu", body);
@@ -336,7 +340,8 @@ void viewer_stage_add_or_remove(viewer_stage *stage, const viewer_request *r) {
         else if (r->category == SKEIN_FORCE) status = skein_force_add(world, r->text, NULL, NULL);
         else status = skein_collider_add(world, r->text, NULL, NULL);
         char set[200];
-        if (adds) snprintf(set, sizeof set, "%s.%zu={\"type\": \"%.60s\"}", viewer_list_of(r->category), place, r->text);
+        if (adds)
+            snprintf(set, sizeof set, "%s.%zu={\"type\": \"%.60s\"}", viewer_list_of(r->category), place, r->text);
         else snprintf(set, sizeof set, "%s.%zu=null", viewer_list_of(r->category), place);
         if (status) viewer_say(stage, SKEIN_LOG_WARNING, "%s", skein_world_error(world)->message);
         else keep(stage, s, set, NULL, NULL);
@@ -394,7 +399,8 @@ void viewer_stage_undo(viewer_stage *stage) {
     say_change(words, sizeof words, "undone", &changes->data[first]);
     if (are_live(changes, first, changes->done)) {
         bool good = true;
-        while (changes->done > first && good && (good = put_live(stage, &changes->data[changes->done - 1], true))) changes->done--;
+        while (changes->done > first && good && (good = put_live(stage, &changes->data[changes->done - 1], true)))
+            changes->done--;
         if (good) viewer_note(stage, "%s", words);
     } else {
         go_to_change(stage, first, words);
@@ -413,7 +419,8 @@ void viewer_stage_redo(viewer_stage *stage) {
     say_change(words, sizeof words, "done again", &changes->data[changes->done]);
     if (are_live(changes, changes->done, end)) {
         bool good = true;
-        while (changes->done < end && good && (good = put_live(stage, &changes->data[changes->done], false))) changes->done++;
+        while (changes->done < end && good && (good = put_live(stage, &changes->data[changes->done], false)))
+            changes->done++;
         if (good) viewer_note(stage, "%s", words);
     } else {
         go_to_change(stage, end, words);

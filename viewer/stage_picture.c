@@ -160,8 +160,8 @@ static void paint_together(const viewer_stage *stage, int place) {
         bool same = target->width == width && target->height == height;
         glEnable(GL_FRAMEBUFFER_SRGB);
         if (target->samples > 1) {
-            glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, target->width, target->height, 0,
-                                   0, target->width, target->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
+            glBlitNamedFramebuffer(target->framebuffer, target->plain_framebuffer, 0, 0, target->width, target->height,
+                                   0, 0, target->width, target->height, GL_COLOR_BUFFER_BIT, GL_NEAREST);
             from = target->plain_framebuffer;
         }
         glDisable(GL_FRAMEBUFFER_SRGB); // what follows are bytes
@@ -195,8 +195,9 @@ static void paint(void *user) {
     render_draw_line_scale(stage->draw, viewer_detail_at(picture->level).scale);
     for (size_t s = 0; s < picture->side_count && !status; s++) {
         const render_target *target = paint_target(stage, s);
-        if (target) status = render_draw_frame(stage->draw, render_world_frame_get(stage->frames[s]), &picture->lens,
-                                   target->framebuffer, target->width, target->height, &picture->error);
+        if (target)
+            status = render_draw_frame(stage->draw, render_world_frame_get(stage->frames[s]), &picture->lens,
+                                       target->framebuffer, target->width, target->height, &picture->error);
         else status = picture->error.status;
     }
     picture->ready = true;

@@ -11,8 +11,8 @@ static void player_says(void *user, skein_log_level level, const char *text) {
 }
 
 viewer_reading viewer_stage_reading(const viewer_stage *stage) {
-    return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare, stage->options->allowed,
-                            stage->card ? stage->options->device : VIEWER_ON_PROCESSOR};
+    return (viewer_reading){stage->options->exporters, stage->options->threads, stage->options->prepare,
+                            stage->options->allowed, stage->card ? stage->options->device : VIEWER_ON_PROCESSOR};
 }
 
 /* After anything that took time which must not count, or that changed what the clock steps. */
@@ -138,8 +138,8 @@ static void compare_with(viewer_stage *stage, const char *set, const viewer_chan
     end_compare(stage);
     if (text[0]) {
         viewer_changes changes = {NULL, 0, 0, 0, 0};
-        bool good = viewer_changes_copy(&changes, &stage->sides[0].changes) &&
-                    viewer_changes_add(&changes, text, NULL, NULL);
+        bool good =
+            viewer_changes_copy(&changes, &stage->sides[0].changes) && viewer_changes_add(&changes, text, NULL, NULL);
         size_t given = changes.count;
         for (size_t i = own ? own->given : 0; own && good && i < own->done; i++)
             good = viewer_changes_add(&changes, own->data[i].set, NULL, NULL);

@@ -22,15 +22,15 @@ enum { VIEWER_SERIES = 6 };
 
 /* 0xRRGGBB, as a screen shows them. */
 typedef struct viewer_colours {
-    uint32_t window, panel, raised;  /* behind everything; of panels; of cards and lists that lie on them */
-    uint32_t field, field_over;      /* controls; under the pointer */
-    uint32_t text, quiet;            /* words; and those that can wait */
-    uint32_t line;                   /* between things, and on charts */
-    uint32_t accent, accent_over;    /* what is chosen, or goes on */
-    uint32_t on_accent;              /* words on it */
-    uint32_t knob, warning, chart;   /* of sliders; words that warn; behind curves */
-    uint32_t axis[3], handle, held;  /* handles along x, y and z, for all of it, and the one that is taken hold of */
-    uint32_t series[VIEWER_SERIES];  /* curves: told apart by lightness, too */
+    uint32_t window, panel, raised; /* behind everything; of panels; of cards and lists that lie on them */
+    uint32_t field, field_over;     /* controls; under the pointer */
+    uint32_t text, quiet;           /* words; and those that can wait */
+    uint32_t line;                  /* between things, and on charts */
+    uint32_t accent, accent_over;   /* what is chosen, or goes on */
+    uint32_t on_accent;             /* words on it */
+    uint32_t knob, warning, chart;  /* of sliders; words that warn; behind curves */
+    uint32_t axis[3], handle, held; /* handles along x, y and z, for all of it, and the one that is taken hold of */
+    uint32_t series[VIEWER_SERIES]; /* curves: told apart by lightness, too */
 } viewer_colours;
 
 const viewer_colours *viewer_colours_of(viewer_theme theme);

@@ -189,8 +189,8 @@ static void show_picture(window *w, int width, int height) {
                                    shown->pictures[shown->in_use]);
     // while the window changes its size, the last picture is stretched
     bool same = shown->width == width - w->left && shown->height == height - w->below;
-    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, w->left, w->below, width,
-                           height,                           GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
+    glBlitNamedFramebuffer(w->framebuffer, 0, 0, 0, shown->width, shown->height, w->left, w->below, width, height,
+                           GL_COLOR_BUFFER_BIT, same ? GL_NEAREST : GL_LINEAR);
 }
 
 /* Shows a picture of a few pixels (no power of two, which some drivers treat apart), as large and stretched: the driver
@@ -348,7 +348,8 @@ static skein_status run(window *w, skein_error *error) {
     rehearse(w);
     set_callbacks(w);
     w->light = w->options->theme == VIEWER_LIGHT;
-    if (!viewer_exchange_open(&w->exchange, &w->events) || !widgets_open(w->glfw, scale_of(w), viewer_colours_of(w->light ? VIEWER_LIGHT : VIEWER_DARK)))
+    if (!viewer_exchange_open(&w->exchange, &w->events) ||
+        !widgets_open(w->glfw, scale_of(w), viewer_colours_of(w->light ? VIEWER_LIGHT : VIEWER_DARK)))
         return render_fail(error, SKEIN_ERROR_MEMORY, "window", "out of memory");
     w->panels.exchange = &w->exchange;
     if (!widgets_has_letters()) {

@@ -114,7 +114,8 @@ static const char **without_output(const char *text, size_t size, const char *co
 }
 
 /* Reads a scene and builds its world; a path of a mesh without a text becomes a scene about it, as in the command. `sets` are "path=value", NULL-terminated, or NULL; `threads` are those that the world may have. False: js_faults() tells. */
-bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets, int threads) {
+bool EXPORT(js_open)(js_scene *js, const char *text, size_t size, const char *path, const char *const *sets,
+                     int threads) {
     const skein_kind *const kinds[] = {render_view_kind(), NULL}; // besides the library's; nothing is exported here
     io_faults faults = {note_fault, js, 0, NULL};
     const js_files *before = js_files_use(&js->files);
@@ -153,8 +154,8 @@ char *EXPORT(js_settings)(const js_scene *js) {
     const io_scene_settings *s = io_scene_get(js->scene);
     const render_view *view = io_scene_view(js->scene);
     json_t *json = json_pack("{s:s, s:s, s:i, s:f, s:f, s:i, s:b}", "name", s->name, "description", s->description,
-                             "frames", (int)s->frames, "fps", s->fps, "dt", js->dt, "stepsPerFrame", js->steps_per_frame,
-                             "byKey", s->advance == IO_BY_KEY);
+                             "frames", (int)s->frames, "fps", s->fps, "dt", js->dt, "stepsPerFrame",
+                             js->steps_per_frame, "byKey", s->advance == IO_BY_KEY);
     json_t *given = json_object_get(io_scene_document(js->scene), "view"), *radius = json_real(view->particle_radius);
     json_object_set_new(json, "particleRadius", radius);
     json_object_set(json, "view", json_is_object(given) ? given : json_object());
@@ -403,8 +404,8 @@ char *EXPORT(js_replay)(js_scene *js, const void *bytes, size_t size) {
     skein_difference d;
     if (failed(js, skein_replay(js->world, bytes, size, &d))) return NULL;
     json_t *json = json_pack("{s:I, s:b, s:i, s:b, s:b, s:b, s:b, s:s}", "steps", (json_int_t)d.steps, "found", d.found,
-                             "particle", (int)d.particle, "exact", d.exact, "position", d.position, "velocity", d.velocity,
-                             "whole", d.is_whole, "stopped", d.stopped);
+                             "particle", (int)d.particle, "exact", d.exact, "position", d.position, "velocity",
+                             d.velocity, "whole", d.is_whole, "stopped", d.stopped);
     char *text = json_dumps(json, JSON_COMPACT);
     json_decref(json);
     return text;
@@ -449,9 +450,13 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
     const skein_mesh whole = {NULL, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count};
     double *places = io_surface_uncut(js->world, handle, &s, &lists) ? places_of(js, &s) : NULL;
     io_clip_params params = {.normals = SKEIN_NORMALS_AREA, .scale = 1};
-    io_clip clip = {.name = "body", .mesh = {places, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices,
-                    s.face_vertex_count}, .corner_uv = s.corner_uv, .fps = io_scene_get(js->scene)->fps, .samples = 1,
-                    .read_path = "", .params = &params};
+    io_clip clip = {.name = "body",
+                    .mesh = {places, s.vertex_count, s.face_sizes, s.face_count, s.face_vertices, s.face_vertex_count},
+                    .corner_uv = s.corner_uv,
+                    .fps = io_scene_get(js->scene)->fps,
+                    .samples = 1,
+                    .read_path = "",
+                    .params = &params};
     io_mesh read = {0};
     char *path = format->keeps_marks ? io_scene_mesh_path(js->scene, body) : NULL;
     const js_files *before = js_files_use(&js->files);
@@ -460,8 +465,8 @@ bool EXPORT(js_clip)(js_scene *js, size_t body, const char *name, uint32_t out[2
         clip.read = &read;
         clip.read_path = path;
     }
-    skein_status status = places ? format->write(&clip, name, &error)
-                                 : io_error_set(&error, SKEIN_ERROR_MEMORY, name, "out of memory");
+    skein_status status =
+        places ? format->write(&clip, name, &error) : io_error_set(&error, SKEIN_ERROR_MEMORY, name, "out of memory");
     js_files_use(before);
     if (status) note_fault(js, &error);
     js_file file = js_file_take_written();
@@ -483,8 +488,11 @@ static void add_text(void *user, const char *text) {
 /* A formula by itself: {"value": its operations as text with those of its gradient, ...} or {"fault": words, with the
  * place shown}; to be freed. `particles` of 0: as many as it names; `result` is a skein_formula_result. */
 char *EXPORT(js_formula)(const char *text, int particles, bool velocities, int result) {
-    skein_formula_desc desc = {.text = text, .particles = particles, .velocities = velocities,
-                               .comparison = result == SKEIN_FORMULA_NUMBER, .result = (skein_formula_result)result};
+    skein_formula_desc desc = {.text = text,
+                               .particles = particles,
+                               .velocities = velocities,
+                               .comparison = result == SKEIN_FORMULA_NUMBER,
+                               .result = (skein_formula_result)result};
     skein_formula_mark mark = {0};
     skein_error error = {0};
     js_bytes shown = {0};
@@ -622,8 +630,8 @@ bool EXPORT(js_surface)(js_scene *js, size_t body, uint32_t out[10]) {
     if (failed(js, skein_body_surface(js->world, skein_object_at(js->world, SKEIN_BODY, body), &s))) return false;
     const void *pointers[] = {s.particle_of_vertex, s.face_sizes, s.face_vertices, s.corner_uv};
     for (int i = 0; i < 4; i++) out[i] = (uint32_t)(uintptr_t)pointers[i];
-    const size_t counts[] = {s.first_particle, s.particle_count,    s.vertex_count, s.face_count,
-                             s.face_vertex_count, s.grid_rows};
+    const size_t counts[] = {s.first_particle, s.particle_count,    s.vertex_count,
+                             s.face_count,     s.face_vertex_count, s.grid_rows};
     for (int i = 0; i < 6; i++) out[4 + i] = (uint32_t)counts[i];
     return true;
 }
@@ -733,9 +741,10 @@ char *EXPORT(js_operations)(js_scene *js, int category, size_t object, size_t in
     double *derivatives = malloc(MOST * MOST_COORDINATES * sizeof *derivatives);
     json_t *list = json_array();
     size_t count = 0;
-    bool good = operations && derivatives &&
-                !failed(js, skein_constraint_evaluate(js->world, handle, index, &value, NULL, NULL, 0)) &&
-                !failed(js, skein_constraint_operations(js->world, handle, index, operations, derivatives, MOST, &count));
+    bool good =
+        operations && derivatives &&
+        !failed(js, skein_constraint_evaluate(js->world, handle, index, &value, NULL, NULL, 0)) &&
+        !failed(js, skein_constraint_operations(js->world, handle, index, operations, derivatives, MOST, &count));
     size_t wide = good ? 3 * value.particle_count : 0;
     for (size_t i = 0; good && i < count && i < MOST; i++) {
         const skein_operation *o = &operations[i];
@@ -771,8 +780,8 @@ char *EXPORT(js_constraint)(js_scene *js, int category, size_t object, size_t in
     double gradient[3 * MOST];
     skein_handle handle = skein_object_at(js->world, (skein_category)category, object);
     if (failed(js, skein_constraint_evaluate(js->world, handle, index, &value, particles, gradient, MOST))) return NULL;
-    json_t *json = json_pack("{s:f, s:s, s:s, s:b, s:b}", "value", value.value, "label", value.label, "text", value.text,
-                             "oneSided", value.one_sided, "energy", value.is_energy);
+    json_t *json = json_pack("{s:f, s:s, s:s, s:b, s:b}", "value", value.value, "label", value.label, "text",
+                             value.text, "oneSided", value.one_sided, "energy", value.is_energy);
     json_t *indices = json_array(), *vectors = json_array();
     for (size_t i = 0; i < MOST && i < value.particle_count; i++) {
         json_array_append_new(indices, json_integer(particles[i]));

@@ -105,7 +105,8 @@ void io_output_abandon(io_output *output) {
 skein_status io_output_commit(io_output *output, skein_error *error) {
     skein_status status = output->status;
     if (status) {
-        io_error_set(error, status, "", status == SKEIN_ERROR_MEMORY ? "out of memory while writing" : "a line is too long");
+        io_error_set(error, status, "",
+                     status == SKEIN_ERROR_MEMORY ? "out of memory while writing" : "a line is too long");
         io_output_abandon(output);
         return status;
     }

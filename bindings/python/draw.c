@@ -33,7 +33,8 @@ static skein_status draw_image(skein_world *world, const render_view *view, cons
     if (!status) {
         render_world_frame_settle(frame);
         render_camera camera = render_world_frame_camera(frame, (double)size[0] / size[1]);
-        status = render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, size[0], size[1], error);
+        status = render_draw_frame(draw, render_world_frame_get(frame), &camera, target.framebuffer, size[0], size[1],
+                                   error);
     }
     if (!status) status = render_target_read(&target, image, error);
     render_world_frame_destroy(frame);

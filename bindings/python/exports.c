@@ -7,14 +7,14 @@
 #include <stdlib.h>
 #include <string.h>
 
-#include <skein/attach.h>
-#include <skein/cut.h>
-#include <skein/gradient.h>
-#include <skein/record.h>
 #include "io/advice.h"
 #include "io/mesh.h"
 #include "io/scene_settings.h"
 #include "render/view.h"
+#include <skein/attach.h>
+#include <skein/cut.h>
+#include <skein/gradient.h>
+#include <skein/record.h>
 
 #define EXPORT __attribute__((visibility("default")))
 
@@ -165,15 +165,36 @@ EXPORT size_t py_struct_size(const char *name);
 
 /* Of a struct of the header by its name, without "skein_"; 0 for one that is not known here. */
 size_t py_struct_size(const char *name) {
-#define SIZE_OF(type_) {#type_, sizeof(skein_##type_)}
+#define SIZE_OF(type_) \
+    { #type_, sizeof(skein_##type_) }
     static const struct {
         const char *name;
         size_t size;
-    } sizes[] = {SIZE_OF(error),   SIZE_OF(field),   SIZE_OF(kind),  SIZE_OF(value),      SIZE_OF(setting), SIZE_OF(handle),
-                 SIZE_OF(world_desc), SIZE_OF(mesh), SIZE_OF(track), SIZE_OF(view),       SIZE_OF(buffer),  SIZE_OF(surface),
-                 SIZE_OF(pose),    SIZE_OF(contact), SIZE_OF(hit),   SIZE_OF(statistics), SIZE_OF(order),   SIZE_OF(constraint_value),
-                 SIZE_OF(gradient_state), SIZE_OF(gradient_desc), SIZE_OF(gradient_result), SIZE_OF(cuts),
-                 SIZE_OF(recorder), SIZE_OF(difference), SIZE_OF(pass)};
+    } sizes[] = {SIZE_OF(error),
+                 SIZE_OF(field),
+                 SIZE_OF(kind),
+                 SIZE_OF(value),
+                 SIZE_OF(setting),
+                 SIZE_OF(handle),
+                 SIZE_OF(world_desc),
+                 SIZE_OF(mesh),
+                 SIZE_OF(track),
+                 SIZE_OF(view),
+                 SIZE_OF(buffer),
+                 SIZE_OF(surface),
+                 SIZE_OF(pose),
+                 SIZE_OF(contact),
+                 SIZE_OF(hit),
+                 SIZE_OF(statistics),
+                 SIZE_OF(order),
+                 SIZE_OF(constraint_value),
+                 SIZE_OF(gradient_state),
+                 SIZE_OF(gradient_desc),
+                 SIZE_OF(gradient_result),
+                 SIZE_OF(cuts),
+                 SIZE_OF(recorder),
+                 SIZE_OF(difference),
+                 SIZE_OF(pass)};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;
     return 0;
@@ -186,21 +207,46 @@ EXPORT const char *py_statistics_member(size_t index, size_t *offset, size_t *si
 const char *py_statistics_member(size_t index, size_t *offset, size_t *size, bool *whole) {
     static const skein_statistics s;
     (void)s;
-#define MEMBER(name_)                                                                                         \
-    {#name_, offsetof(skein_statistics, name_), sizeof s.name_, _Generic(s.name_, uint64_t: true, default: false)}
+#define MEMBER(name_) \
+    { #name_, offsetof(skein_statistics, name_), sizeof s.name_, _Generic(s.name_, uint64_t : true, default : false) }
     static const struct {
         const char *name;
         size_t offset, size;
         bool whole;
-    } members[] = {
-        MEMBER(steps), MEMBER(substeps), MEMBER(time), MEMBER(kinetic_energy), MEMBER(potential_energy),
-        MEMBER(elastic_energy), MEMBER(dissipated_energy), MEMBER(momentum), MEMBER(angular_momentum),
-        MEMBER(max_stretch), MEMBER(p99_stretch), MEMBER(limited), MEMBER(over_limit), MEMBER(most_over_limit),
-        MEMBER(residual), MEMBER(unsolved), MEMBER(newton_iterations), MEMBER(cg_iterations), MEMBER(solver_factors),
-        MEMBER(solver_failures), MEMBER(all_unsolved), MEMBER(all_solver_failures), MEMBER(contact_overflows), MEMBER(max_penetration),
-        MEMBER(contacts), MEMBER(crossings), MEMBER(particles), MEMBER(pinned_particles), MEMBER(constraints),
-        MEMBER(asleep), MEMBER(nonfinite), MEMBER(guarded), MEMBER(memory_bytes), MEMBER(state_hash)
-    };
+    } members[] = {MEMBER(steps),
+                   MEMBER(substeps),
+                   MEMBER(time),
+                   MEMBER(kinetic_energy),
+                   MEMBER(potential_energy),
+                   MEMBER(elastic_energy),
+                   MEMBER(dissipated_energy),
+                   MEMBER(momentum),
+                   MEMBER(angular_momentum),
+                   MEMBER(max_stretch),
+                   MEMBER(p99_stretch),
+                   MEMBER(limited),
+                   MEMBER(over_limit),
+                   MEMBER(most_over_limit),
+                   MEMBER(residual),
+                   MEMBER(unsolved),
+                   MEMBER(newton_iterations),
+                   MEMBER(cg_iterations),
+                   MEMBER(solver_factors),
+                   MEMBER(solver_failures),
+                   MEMBER(all_unsolved),
+                   MEMBER(all_solver_failures),
+                   MEMBER(contact_overflows),
+                   MEMBER(max_penetration),
+                   MEMBER(contacts),
+                   MEMBER(crossings),
+                   MEMBER(particles),
+                   MEMBER(pinned_particles),
+                   MEMBER(constraints),
+                   MEMBER(asleep),
+                   MEMBER(nonfinite),
+                   MEMBER(guarded),
+                   MEMBER(memory_bytes),
+                   MEMBER(state_hash)};
     if (index >= sizeof members / sizeof *members) return NULL;
     *offset = members[index].offset, *size = members[index].size, *whole = members[index].whole;
     return members[index].name;

@@ -42,8 +42,8 @@ size_t py_fit_struct_size(const char *name) {
     static const struct {
         const char *name;
         size_t size;
-    } sizes[] = {{"module", sizeof(io_module)},       {"content", sizeof(fit_content)}, {"field", sizeof(fit_field)},
-                 {"number", sizeof(fit_number)},      {"state", sizeof(fit_state)},     {"request", sizeof(fit_request)},
+    } sizes[] = {{"module", sizeof(io_module)},   {"content", sizeof(fit_content)}, {"field", sizeof(fit_field)},
+                 {"number", sizeof(fit_number)},  {"state", sizeof(fit_state)},     {"request", sizeof(fit_request)},
                  {"outcome", sizeof(fit_outcome)}};
     for (size_t i = 0; i < sizeof sizes / sizeof *sizes; i++)
         if (!strcmp(sizes[i].name, name)) return sizes[i].size;

@@ -19,11 +19,13 @@ extern "C" {
 
 /* Copies up to `most` of the particles of a body that a text names, as its pins are named: "top edge", numbers (of vertices), "box x y z x y z",
  * "sphere x y z radius", by where they were built. `count` receives how many there are; `out` may be NULL where `most` is 0. Fails with SKEIN_ERROR_NAME, SKEIN_ERROR_VALUE and SKEIN_ERROR_MEMORY. */
-skein_status skein_body_select(skein_world *world, skein_handle body, const char *text, uint32_t *out, size_t most, size_t *count);
+skein_status skein_body_select(skein_world *world, skein_handle body, const char *text, uint32_t *out, size_t most,
+                               size_t *count);
 /* Of each of `count` particles the triangle of the body `to` that is nearest now: `out`, count x 4, has the particle and the three
  * corners, as constraints of the kind "attachment" take them. Fails with SKEIN_ERROR_VALUE where that body has no triangles, and
  * for particles of its own; with SKEIN_ERROR_MEMORY. */
-skein_status skein_attachments_find(skein_world *world, const uint32_t *particles, size_t count, skein_handle to, uint32_t *out);
+skein_status skein_attachments_find(skein_world *world, const uint32_t *particles, size_t count, skein_handle to,
+                                    uint32_t *out);
 
 #if defined(__GNUC__)
 #pragma GCC visibility pop

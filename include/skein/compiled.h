@@ -56,9 +56,9 @@ typedef struct skein_groups {
     const uint8_t *ahead;  /* of each group: how many from it on, itself among them, share no particle */
     size_t packed;
     skein_real *positions;
-    skein_real *other; /* of forces the velocities, or NULL without damping; of damped projection the positions at the substep's start */
-    skein_real *sums;  /* of forces: added to */
-    const skein_real *rest;  /* rest value r of lane l: rest[r * rest_stride + l] */
+    skein_real *other;      /* of forces the velocities, or NULL without damping; of damped projection X at the start */
+    skein_real *sums;       /* of forces: added to */
+    const skein_real *rest; /* rest value r of lane l: rest[r * rest_stride + l] */
     size_t rest_stride;
     const skein_real *stiffness, *compliance;
     skein_real *multiplier;       /* of damped projection */

@@ -98,9 +98,9 @@ SK_INLINE sk_wide skein_within_one(sk_wide x) {
 #define SKEIN_AXIS_2 z
 #define POSITION(particle, axis) e->x[particle].SKEIN_AXIS_##axis
 /* Parameters, and then rest values. */
-#define PARAMETER(index) \
+#define PARAMETER(index)                                                                   \
     ((index) < SKEIN_PARAMETERS ? all->parameter[(index) < SKEIN_PARAMETERS ? (index) : 0] \
-                                : e->rest[(index) < SKEIN_PARAMETERS ? 0 : (index) - SKEIN_PARAMETERS])
+                                : e->rest[(index) < SKEIN_PARAMETERS ? 0 : (index)-SKEIN_PARAMETERS])
 #define TIME all->time
 #define SHARE(index, number) all->shared[index] = (number)
 #define SHARED(index) all->shared[index]
@@ -217,12 +217,11 @@ static void skein_second(const skein_element_values *in) {
 #endif
 
 /* What an emitted file ends with. */
-#define SKEIN_COMPILED(name, hash_of_formula, text_of_formula, names)                                 \
-    extern const skein_compiled name;                                                                 \
-    const skein_compiled name = {SKEIN_COMPILED_ABI, sizeof(real),         SK_PART,     SKEIN_NEEDS,    \
-                                 hash_of_formula,    text_of_formula,      names,       SKEIN_ENERGY,   \
-                                 skein_project,      skein_project_damped, skein_force, skein_evaluate, \
-                                 skein_second}
+#define SKEIN_COMPILED(name, hash_of_formula, text_of_formula, names)                                                   \
+    extern const skein_compiled name;                                                                                   \
+    const skein_compiled name = {SKEIN_COMPILED_ABI, sizeof(real),   SK_PART,      SKEIN_NEEDS,   hash_of_formula,      \
+                                 text_of_formula,    names,          SKEIN_ENERGY, skein_project, skein_project_damped, \
+                                 skein_force,        skein_evaluate, skein_second}
 
 #endif
 #endif

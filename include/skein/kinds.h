@@ -92,7 +92,7 @@ typedef struct skein_force_type {
 /* By a formula of p0 to p7, which wants to be 0 or, written `a >= b`, at least 0; or by an energy, J. Besides its own
  * fields such a kind has those of `formula` ("stiffness", "damping") or `energy` ("scale"), with their defaults. */
 typedef struct skein_constraint_type {
-    skein_kind kind; /* of SKEIN_CONSTRAINT */
+    skein_kind kind;              /* of SKEIN_CONSTRAINT */
     const char *formula, *energy; /* one of both */
 } skein_constraint_type;
 
@@ -182,8 +182,10 @@ void skein_write_end(skein_plan_builder *builder, size_t repeat);
 /* X stands at this part of the substep from here on: 0 its start, 1 its end. */
 void skein_write_stage_time(skein_plan_builder *builder, double part);
 /* dst = a p + b q; dst = p + a q/m, q being a force. SKEIN_NO_VECTOR is left out. */
-void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b, skein_plan_vector q);
-void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_plan_vector p, double a, skein_plan_vector q);
+void skein_write_sum(skein_plan_builder *builder, skein_plan_vector dst, double a, skein_plan_vector p, double b,
+                     skein_plan_vector q);
+void skein_write_kick(skein_plan_builder *builder, skein_plan_vector dst, skein_plan_vector p, double a,
+                      skein_plan_vector q);
 /* F = all forces and those of every constraint, without what contact holds back. */
 void skein_write_forces(skein_plan_builder *builder);
 /* V += steering, once a substep; then bounds on V, which skein_write_bounds() applies once more. */

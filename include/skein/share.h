@@ -79,14 +79,14 @@ skein_status skein_world_part_shadow(skein_world *world, size_t body);
 skein_status skein_world_can_share(skein_world *world, double dt);
 /* A body of a run that can be shared. */
 typedef struct skein_share_body {
-    size_t first, count;   /* its particles */
+    size_t first, count; /* its particles */
     bool enabled;
-    bool loose;            /* nothing joins or leads its particles, and its kind has a `count` of them */
-    size_t together;       /* it stays in one part with all bodies of the same number: that of the first of them. Loose ones
+    bool loose;      /* nothing joins or leads its particles, and its kind has a `count` of them */
+    size_t together; /* it stays in one part with all bodies of the same number: that of the first of them. Loose ones
                               are with nobody */
-    bool shown;            /* a rule on it, and not on the loose ones, looks at those or is looked at: where it does not
+    bool shown;      /* a rule on it, and not on the loose ones, looks at those or is looked at: where it does not
                               live it has to be as a shadow */
-    double work;           /* about what a step of it costs: how often a constraint or a particle is dealt with */
+    double work;     /* about what a step of it costs: how often a constraint or a particle is dealt with */
 } skein_share_body;
 /* The bodies of a run, in the order of their making, `most` of them at most in `out` (which may be NULL if that is 0);
  * `count` receives how many there are. SKEIN_ERROR_VALUE where the run cannot be shared. */

@@ -582,10 +582,10 @@ skein_status skein_snapshot_read(skein_world *world, const void *bytes, size_t s
 
 typedef struct skein_snapshot_info {
     uint32_t version;
-    uint32_t real_size;  /* bytes of a number: 4 in float, 8 in double */
-    double time;         /* s */
+    uint32_t real_size; /* bytes of a number: 4 in float, 8 in double */
+    double time;        /* s */
     uint64_t steps, particles, objects;
-    size_t size;         /* bytes of the snapshot; what follows them is the caller's own */
+    size_t size; /* bytes of the snapshot; what follows them is the caller's own */
 } skein_snapshot_info;
 /* Looks at a snapshot without a world: whether it is whole, and of what. Fails as above. */
 skein_status skein_snapshot_look(const void *bytes, size_t size, skein_snapshot_info *info, skein_error *error);
@@ -730,11 +730,11 @@ skein_status skein_constraint_evaluate(skein_world *world, skein_handle object, 
 
 /* A step on the way to a constraint's value. */
 typedef struct skein_operation {
-    const char *name;    /* "input", "constant", "parameter"; "add", "sqrt" ..., as `skein formula --graph` has them */
-    char label[40];      /* of the first three what it is: "p0.x", "t", "0.5", "L", "rest 1"; else the word of the text
+    const char *name;  /* "input", "constant", "parameter"; "add", "sqrt" ..., as `skein formula --graph` has them */
+    char label[40];    /* of the first three what it is: "p0.x", "t", "0.5", "L", "rest 1"; else the word of the text
                             that it comes of ("length"), or "" */
-    int operand_count;   /* 0 to 4 */
-    size_t operand[4];   /* operations before it. "less" is a < b ? c : d */
+    int operand_count; /* 0 to 4 */
+    size_t operand[4]; /* operations before it. "less" is a < b ? c : d */
     double value;
 } skein_operation;
 
@@ -759,11 +759,11 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
 /* Two features of surfaces that touch, as a rule of contact keeps them: a vertex and a triangle, or two edges. */
 typedef struct skein_surface_contact {
     skein_handle rule;
-    bool edges;           /* particle[0] and [1] are one edge, [2] and [3] the other; else [0] meets the triangle of the rest */
+    bool edges; /* particle[0] and [1] are one edge, [2] and [3] the other; else [0] meets the triangle of the rest */
     uint32_t particle[4];
-    double weight[4];     /* of the particles: those of the first feature add up to 1, those of the second to -1. The sum of
+    double weight[4]; /* of the particles: those of the first feature add up to 1, those of the second to -1. The sum of
                              weights times places is the way from the second feature's nearest point to the first's */
-    double normal[3];     /* unit, from the second feature to the first */
+    double normal[3]; /* unit, from the second feature to the first */
     double gap, thickness; /* m: how far apart they are, and are to be */
 } skein_surface_contact;
 /* Copies up to `most` of the pairs that are no farther apart than their thickness by more than a thousandth, by the positions as
@@ -826,7 +826,7 @@ typedef struct skein_statistics {
     double p99_stretch;         /* 99 % of the edges stretch at most so much */
     size_t limited;             /* edges that have a strain limit, "stretch.limit" of a cloth */
     size_t over_limit;          /* of these, stretched by more than 1.1 times that */
-    double most_over_limit;     /* the most that an edge stretches beyond its limit: 0.002 if one of 0.01 stretches by 0.012 */
+    double most_over_limit; /* the most that an edge stretches beyond its limit: 0.002 if one of 0.01 stretches by 0.012 */
     /* of the last step of a method that solves for it (backward_euler), else 0 */
     double residual;          /* what was left of the balance of momentum, as a share of its start: the worst
                                  substep's */
@@ -840,9 +840,9 @@ typedef struct skein_statistics {
     uint64_t contact_overflows; /* searches that found more pairs for the force "contact" than there is room for, so that nothing
                                    touched until the next one: its thickness is too large for the bodies, or they have blown
                                    up. Since the beginning or the last reset; a snapshot does not hold it */
-    double max_penetration;   /* m, below a collider's thickness */
-    size_t contacts;          /* pairs of a particle and a collider that touch */
-    size_t crossings;         /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */
+    double max_penetration; /* m, below a collider's thickness */
+    size_t contacts;        /* pairs of a particle and a collider that touch */
+    size_t crossings;       /* of an edge and a triangle that contact keeps apart (the force "contact"); else 0 */
     size_t particles, pinned_particles, constraints;
     size_t asleep;       /* particles of bodies that sleep (a body's `sleep`) */
     size_t nonfinite;    /* particles with a position or velocity that is not finite */
@@ -922,8 +922,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
 
 /* Writes the plan's ops as text, a line each, for a step of `dt`. Lines go to `write` in order; NULL only
  * makes the plan, which says whether the method can run the rules. Fails as a step does. */
-skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line),
-                                 void *user);
+skein_status skein_world_explain(skein_world *world, double dt, void (*write)(void *user, const char *line), void *user);
 
 /* Whether ops of the plan are fused, as they are in a new world: what predicts, saves and corrects is one op then
  * instead of several, the bits are the same, and steps are quicker. Plans for a card always are. */

@@ -75,8 +75,8 @@ typedef struct vec4 {
 #define both(a, b) ((a) && (b))
 #define either(a, b) ((a) || (b))
 #define none(flag_) (!(flag_))
-#define root(a) _Generic((a), float: __builtin_sqrtf, default: __builtin_sqrt)(a)
-#define absolute(a) _Generic((a), float: __builtin_fabsf, default: __builtin_fabs)(a)
+#define root(a) _Generic((a), float : __builtin_sqrtf, default : __builtin_sqrt)(a)
+#define absolute(a) _Generic((a), float : __builtin_fabsf, default : __builtin_fabs)(a)
 
 #endif
 

@@ -67,8 +67,7 @@ static void range_text(const skein_field *field, char *text, size_t size) {
 }
 
 static bool is_whole(skein_field_type type) {
-    return type == SKEIN_FIELD_BOOL || type == SKEIN_FIELD_INT || type == SKEIN_FIELD_INT2 ||
-           type == SKEIN_FIELD_INT3;
+    return type == SKEIN_FIELD_BOOL || type == SKEIN_FIELD_INT || type == SKEIN_FIELD_INT2 || type == SKEIN_FIELD_INT3;
 }
 
 skein_status skein_field_check(const skein_field *field, const skein_value *value, skein_error *error) {
@@ -133,8 +132,8 @@ skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, v
     return SKEIN_OK;
 }
 
-skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,
-                              void *params, skein_error *error) {
+skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields,
+                              size_t count, void *params, skein_error *error) {
     const skein_field *choice = sk_field_named(fields, count, presets->field);
     int32_t word = *(const int32_t *)(const void *)((const char *)params + choice->offset);
     skein_status status = SKEIN_OK;

@@ -43,10 +43,10 @@
 /* A choice whose words stand for values of other fields (a fabric: a density, a stiffness ...). The first stands for
  * none. */
 typedef struct sk_presets {
-    const char *field;         /* the choice */
-    const char *const *names;  /* of fields that take one number */
+    const char *field;        /* the choice */
+    const char *const *names; /* of fields that take one number */
     size_t count;
-    const double *values;      /* `count` for each word but the first; NaN: the field's own default */
+    const double *values; /* `count` for each word but the first; NaN: the field's own default */
 } sk_presets;
 
 /* Fills `params` with the table's defaults. Text fields are copied; false when there is no memory. */
@@ -60,8 +60,8 @@ skein_status sk_field_store(sk_allocator *allocator, const skein_field *field, v
 bool sk_values_are_same(const skein_value *a, const skein_value *b);
 skein_value sk_field_load(const skein_field *field, const void *params);
 /* Stores the values that the chosen word in `params` stands for. */
-skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields, size_t count,
-                              void *params, skein_error *error);
+skein_status sk_presets_apply(sk_allocator *allocator, const sk_presets *presets, const skein_field *fields,
+                              size_t count, void *params, skein_error *error);
 /* The field of that name, or NULL. */
 const skein_field *sk_field_named(const skein_field *fields, size_t count, const char *name);
 

@@ -147,6 +147,7 @@ bool sk_is_turn(const double turn[9]) {
             worst = fmax(worst, fabs(dot - (r == c)));
         }
     const double *t = turn;
-    double volume = t[0] * (t[4] * t[8] - t[5] * t[7]) - t[1] * (t[3] * t[8] - t[5] * t[6]) + t[2] * (t[3] * t[7] - t[4] * t[6]);
+    double volume =
+        t[0] * (t[4] * t[8] - t[5] * t[7]) - t[1] * (t[3] * t[8] - t[5] * t[6]) + t[2] * (t[3] * t[7] - t[4] * t[6]);
     return worst < 1e-6 && volume > 0;
 }

@@ -58,7 +58,8 @@ bool sk_pairs_next(const char **pairs, sk_word pair[2]) {
     return true;
 }
 
-bool sk_pairs_mean(const char *pairs, const char *name, const char *groups, const char *other, const char *others_groups) {
+bool sk_pairs_mean(const char *pairs, const char *name, const char *groups, const char *other,
+                   const char *others_groups) {
     for (sk_word pair[2]; sk_pairs_next(&pairs, pair);)
         for (int k = 0; k < 2; k++)
             if (sk_is_called(name, groups, pair[k]) && sk_is_called(other, others_groups, pair[1 - k])) return true;

@@ -25,6 +25,7 @@ bool sk_names_mean(const char *names, const char *name, const char *groups);
 /* The next of pairs of names, "cape:shirt, cape:cape", without blanks; what has no colon is a name twice. False at the end. */
 bool sk_pairs_next(const char **pairs, sk_word pair[2]);
 /* Whether one of such pairs is two bodies, in either order. */
-bool sk_pairs_mean(const char *pairs, const char *name, const char *groups, const char *other, const char *others_groups);
+bool sk_pairs_mean(const char *pairs, const char *name, const char *groups, const char *other,
+                   const char *others_groups);
 
 #endif

@@ -19,8 +19,8 @@ void sk_pace_note(sk_pace *pace, double seconds) {
 }
 #else
 enum {
-    FIRST_TRIAL = 4,  /* steps on a level before others are tried */
-    LEAST_PAUSE = 32, /* steps between trials, doubled after each trial that failed or did not last, */
+    FIRST_TRIAL = 4,   /* steps on a level before others are tried */
+    LEAST_PAUSE = 32,  /* steps between trials, doubled after each trial that failed or did not last, */
     MOST_PAUSE = 1024, /* up to this */
     SOON = 4           /* so much sooner where the work has changed */
 };

@@ -21,18 +21,18 @@ enum {
 };
 
 typedef struct sk_pace {
-    int levels, level, most;     /* the number of levels, the present one, and the threads of the highest */
-    int trying, left;            /* the level that is being tried, and for how many more steps */
-    bool judging;                /* the steps after a trial are under way */
-    int tried;                   /* steps of the trial */
-    double before, trial;        /* s: a step before it, in the mean, and all of its steps */
+    int levels, level, most;      /* the number of levels, the present one, and the threads of the highest */
+    int trying, left;             /* the level that is being tried, and for how many more steps */
+    bool judging;                 /* the steps after a trial are under way */
+    int tried;                    /* steps of the trial */
+    double before, trial;         /* s: a step before it, in the mean, and all of its steps */
     double recent[SK_PACE_TRIAL]; /* s: the last steps on the present level, since the last trial ended; */
-    int known;                   /* and how many there were */
-    double last, judged;         /* s: the last step; and one when it was last decided, 0: never */
-    int wait, pause;             /* steps until the next trial, and after a trial that failed */
-    int stayed, since;           /* steps on the present level, and since it was last decided */
-    bool up;                     /* the next trial is with more threads */
-    double mean[SK_PACE_LEVELS]; /* a step's time, s, the newest weighing most; 0: not known. Not the median: threads
+    int known;                    /* and how many there were */
+    double last, judged;          /* s: the last step; and one when it was last decided, 0: never */
+    int wait, pause;              /* steps until the next trial, and after a trial that failed */
+    int stayed, since;            /* steps on the present level, and since it was last decided */
+    bool up;                      /* the next trial is with more threads */
+    double mean[SK_PACE_LEVELS];  /* a step's time, s, the newest weighing most; 0: not known. Not the median: threads
                                     that lose their processor cost time in few steps */
 } sk_pace;
 

@@ -34,7 +34,8 @@ void sk_parallel_for(sk_tasks *tasks, size_t begin, size_t end, sk_range_body *b
  * no tasks, or no more than one piece, it is 0. */
 typedef void sk_piece_body(void *data, int thread, size_t begin, size_t end);
 #ifdef SK_ONE_THREAD // a page without workers: what is called in one place only becomes a part of it (1.6 KB, packed)
-static inline void sk_parallel_pieces(sk_tasks *tasks, size_t begin, size_t end, size_t grain, sk_piece_body *body, void *data) {
+static inline void sk_parallel_pieces(sk_tasks *tasks, size_t begin, size_t end, size_t grain, sk_piece_body *body,
+                                      void *data) {
     (void)tasks, (void)grain;
     if (begin < end) body(data, 0, begin, end);
 }

@@ -17,14 +17,13 @@
 
 enum {
     MOST_LEVELS = 8,
-    LEAST_HUBS = 9,  /* of the coarsest */
+    LEAST_HUBS = 9,         /* of the coarsest */
     LEAST_PARTICLES = 2000, /* smaller meshes are firm enough with spans, and faster */
-    SWEEPS = 2      /* of its distances, forth and back */
+    SWEEPS = 2              /* of its distances, forth and back */
 };
-static const double
-    reach = 1.6, /* hubs' distances that a vertex takes shares up to: a hub is within one */
-    long_way = 2, /* hubs that are nearer have a distance */
-    finest_itself = 0.75; /* hubs of the finest level stand for themselves so far, and so are firmer */
+static const double reach = 1.6, /* hubs' distances that a vertex takes shares up to: a hub is within one */
+    long_way = 2,                /* hubs that are nearer have a distance */
+    finest_itself = 0.75;        /* hubs of the finest level stand for themselves so far, and so are firmer */
 
 /* A hub that a member of the finer level is near. */
 typedef struct tie {
@@ -49,12 +48,12 @@ typedef struct builder {
     const sk_sheet *sheet;
     const double *mass; /* of particles */
     const bool *pinned;
-    double edge;        /* m: a mean one */
+    double edge;                  /* m: a mean one */
     level level[MOST_LEVELS + 1]; /* the first: all particles */
     size_t count;
-    uint32_t *place;    /* of particles: in the finer level, or UINT32_MAX */
-    uint32_t *hub_at;   /* of particles: in the level in the making, or UINT32_MAX */
-    bool *covered;      /* of particles */
+    uint32_t *place;  /* of particles: in the finer level, or UINT32_MAX */
+    uint32_t *hub_at; /* of particles: in the level in the making, or UINT32_MAX */
+    bool *covered;    /* of particles */
     /* in the search from a hub: */
     double spacing;
     level *now;
@@ -161,7 +160,8 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
 }
 
 /* What is carried, in the order of members. */
-static sk_aggregate *carried_by(const builder *b, const level *finer, const level *l, const double *sum, uint32_t first) {
+static sk_aggregate *carried_by(const builder *b, const level *finer, const level *l, const double *sum,
+                                uint32_t first) {
     size_t carried = finer->count - l->count, shares = 0, next = 0;
     for (size_t i = 0; i < l->ties.count; i++) shares += !is_hub(b, finer, l->ties.data[i].member);
     sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, shares);
@@ -204,12 +204,14 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
  * spread out, at least. A distance along an arc is longer than its chord, and what is around its ends lies off it by about as
  * much again. */
 static double length_of(const builder *b, const level *l, const tie *pair) {
-    const double *first = b->sheet->position[l->particle[pair->member]], *second = b->sheet->position[l->particle[pair->hub]];
+    const double *first = b->sheet->position[l->particle[pair->member]],
+                 *second = b->sheet->position[l->particle[pair->hub]];
     const double chord = apart(first, second), bent = chord > 0 ? fmax(1, pair->distance / chord) : 1;
     return bent * bent * apart(l->mean[pair->member], l->mean[pair->hub]);
 }
 
-static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a, skein_world *world, sk_body *body, skein_error *error) {
+static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a, skein_world *world, sk_body *body,
+                              skein_error *error) {
     const size_t count = l->pairs.count;
     uint32_t *pairs = sk_allocate(b->allocator, 2 * count * sizeof *pairs);
     real *rest = sk_allocate(b->allocator, 3 * count * sizeof *rest);
@@ -224,8 +226,8 @@ static skein_status add_batch(const builder *b, const level *l, sk_aggregate *a,
         }
     }
     if (!status)
-        status = sk_world_add_body_batch(world, body, &sk_coarse_distance, "aggregate", (sk_material){0, 0}, false, count, pairs, rest,
-                                         NULL, error);
+        status = sk_world_add_body_batch(world, body, &sk_coarse_distance, "aggregate", (sk_material){0, 0}, false,
+                                         count, pairs, rest, NULL, error);
     if (!status) sk_world_bound_aggregate(body, &body->tether_bound, a);
     else sk_aggregate_release(a, b->allocator);
     sk_release(b->allocator, pairs);
@@ -285,20 +287,23 @@ static void mark_held(const builder *b, size_t coarsest, bool *held) {
     for (size_t i = 0; i < l->count && coarsest; i++) held[l->particle[i]] = true;
 }
 
-skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank, skein_world *world, sk_body *body,
-                               sk_held_hubs *held, skein_error *error) {
+skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank,
+                               skein_world *world, sk_body *body, sk_held_hubs *held, skein_error *error) {
     builder *b = sk_allocate(sheet->allocator, sizeof *b);
     sk_aggregate *made[MOST_LEVELS + 1] = {NULL};
     double *sum = sk_allocate(sheet->allocator, (sheet->particle_count + 1) * sizeof *sum);
     bool good = b && sum && begin(b, sheet, mass, pinned, rank);
-    for (; good && b->edge > 0 && sheet->particle_count >= LEAST_PARTICLES && !sheet->grid_rows && b->count <= MOST_LEVELS; b->count++) {
+    for (; good && b->edge > 0 && sheet->particle_count >= LEAST_PARTICLES && !sheet->grid_rows &&
+           b->count <= MOST_LEVELS;
+         b->count++) {
         const level *finer = &b->level[b->count - 1];
         level *l = &b->level[b->count];
         b->spacing = b->edge * pow(2, (double)b->count);
         for (size_t i = 0; i < sheet->particle_count; i++) b->place[i] = UINT32_MAX;
         good = choose_hubs(b, finer, l);
         if (!good || l->count < LEAST_HUBS || l->count == finer->count || !l->pairs.count) break;
-        good = sum_up(b, finer, l, sum) && (made[b->count] = carried_by(b, finer, l, sum, body->first_particle)) != NULL;
+        good =
+            sum_up(b, finer, l, sum) && (made[b->count] = carried_by(b, finer, l, sum, body->first_particle)) != NULL;
     }
     skein_status status = good ? SKEIN_OK : sk_fail_memory(error, "aggregate");
     size_t coarsest = MOST_LEVELS;

@@ -14,7 +14,7 @@ typedef struct sk_held_hubs {
 
 /* Bounds that the body's tether bound holds. `mass` of each particle; rank[i]: its place in memory. A sheet that is too small, or is
  * a grid, gets none. */
-skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank, skein_world *world, sk_body *body,
-                               sk_held_hubs *held, skein_error *error);
+skein_status sk_aggregates_add(const sk_sheet *sheet, const double *mass, const bool *pinned, const uint32_t *rank,
+                               skein_world *world, sk_body *body, sk_held_hubs *held, skein_error *error);
 
 #endif

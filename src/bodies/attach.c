@@ -7,7 +7,8 @@
 #include "colliders/trimesh.h"
 #include "world/choose.h"
 
-skein_status skein_body_select(skein_world *world, skein_handle handle, const char *text, uint32_t *out, size_t most, size_t *count) {
+skein_status skein_body_select(skein_world *world, skein_handle handle, const char *text, uint32_t *out, size_t most,
+                               size_t *count) {
     SK_NEED(world, world);
     SK_NEED(world, text);
     SK_NEED(world, count);
@@ -62,8 +63,8 @@ static uint32_t particle_of(const sk_trimesh *m, uint32_t vertex) {
     return v;
 }
 
-static skein_status find_triangles(skein_world *world, const uint32_t *particles, size_t count, const sk_body *to, uint32_t *out,
-                                   skein_error *error) {
+static skein_status find_triangles(skein_world *world, const uint32_t *particles, size_t count, const sk_body *to,
+                                   uint32_t *out, skein_error *error) {
     sk_trimesh *m = NULL;
     skein_status status = surface_of(world, to, &m, error);
     for (size_t i = 0; i < count && !status; i++) {
@@ -72,13 +73,15 @@ static skein_status find_triangles(skein_world *world, const uint32_t *particles
         if ((status = skein_positions_copy(world, particles[i], 1, at))) break;
         sk_trimesh_find_seat(m, at, &seat);
         out[4 * i] = particles[i];
-        for (size_t k = 0; k < 3; k++) out[4 * i + 1 + k] = to->first_particle + particle_of(m, m->corner[seat.triangle][k]);
+        for (size_t k = 0; k < 3; k++)
+            out[4 * i + 1 + k] = to->first_particle + particle_of(m, m->corner[seat.triangle][k]);
     }
     sk_trimesh_destroy(m);
     return status;
 }
 
-skein_status skein_attachments_find(skein_world *world, const uint32_t *particles, size_t count, skein_handle to, uint32_t *out) {
+skein_status skein_attachments_find(skein_world *world, const uint32_t *particles, size_t count, skein_handle to,
+                                    uint32_t *out) {
     SK_NEED(world, world);
     if (count) SK_NEED(world, particles);
     if (count) SK_NEED(world, out);
@@ -87,10 +90,12 @@ skein_status skein_attachments_find(skein_world *world, const uint32_t *particle
     if (!object) return SKEIN_ERROR_HANDLE;
     const sk_body *body = object->as.body;
     if (!body->triangle_count)
-        return sk_fail(error, SKEIN_ERROR_VALUE, "to", "'%s' has no triangles that a particle could be tied to", body->label);
+        return sk_fail(error, SKEIN_ERROR_VALUE, "to", "'%s' has no triangles that a particle could be tied to",
+                       body->label);
     for (size_t i = 0; i < count; i++) {
         if (particles[i] >= world->particles.count)
-            return sk_fail(error, SKEIN_ERROR_VALUE, "", "there is no particle %u (the world has %zu)", particles[i], world->particles.count);
+            return sk_fail(error, SKEIN_ERROR_VALUE, "", "there is no particle %u (the world has %zu)", particles[i],
+                           world->particles.count);
         if (particles[i] - body->first_particle < body->particle_count)
             return sk_fail(error, SKEIN_ERROR_VALUE, "", "particle %u is one of '%s' itself", particles[i], body->label);
     }

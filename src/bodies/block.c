@@ -117,7 +117,8 @@ skein_status sk_block_add_strips(sk_block *block) {
     for (uint32_t i = 0, at = 0; i < n[0] && place; i++)
         for (uint32_t j = 0; j < n[1]; j++)
             for (uint32_t k = 0; k < n[2]; k++, at++) place[at] = (j * n[0] + i) * n[2] + k;
-    skein_status status = sk_world_add_strips(block->world, block->body, rows, columns, (uint32_t)block->count, place, block->error);
+    skein_status status =
+        sk_world_add_strips(block->world, block->body, rows, columns, (uint32_t)block->count, place, block->error);
     sk_release(&block->world->allocator, place);
     return status;
 }

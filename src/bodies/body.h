@@ -5,8 +5,8 @@
 #include "world/world.h"
 
 /* How a body's surface is drawn: an enum skein_look, stored as int32_t. It has no effect on the motion. */
-#define SK_LOOK(s, member, initial_)                                                                          \
-    SK_CHOICE(s, member, "look", initial_, "cloth|jelly|plain",                                               \
+#define SK_LOOK(s, member, initial_)                            \
+    SK_CHOICE(s, member, "look", initial_, "cloth|jelly|plain", \
               "what its surface is drawn as: woven; smooth and lit through, with round edges; or of one colour")
 
 /* The constraints that bodies are made of. */

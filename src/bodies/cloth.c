@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-#include "bodies/body.h"
 #include "bodies/aggregate.h"
+#include "bodies/body.h"
 #include "bodies/coarse.h"
 #include "bodies/fabrics.h"
 #include "bodies/faults.h"
@@ -68,9 +68,10 @@ static const skein_field fields[] = {
             "of stretching; other motion is free"),
     SK_REAL(cloth_params, shear.stiffness, "shear.stiffness", "N/m", 2e3, 0, SK_UNBOUNDED, "across the threads"),
     SK_REAL(cloth_params, shear.damping, "shear.damping", "N s/m", 0, 0, SK_FAR, "of shearing"),
-    SK_CHOICE(cloth_params, diagonals, "shear.diagonals", BY_PINS, "springs|ties|pins",
-              "springs; or ties, slack when shorter, so that folds can run to one point; \"pins\": ties where all pins are "
-              "within three edges and an eighth of the sheet, else springs"),
+    SK_CHOICE(
+        cloth_params, diagonals, "shear.diagonals", BY_PINS, "springs|ties|pins",
+        "springs; or ties, slack when shorter, so that folds can run to one point; \"pins\": ties where all pins are "
+        "within three edges and an eighth of the sheet, else springs"),
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
         "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
@@ -81,10 +82,9 @@ static const skein_field fields[] = {
             "of the sheet against angle or curvature, the same at any resolution (1e-5 is a cotton)"),
     SK_REAL(cloth_params, limit, "stretch.limit", "", SK_UNBOUNDED, 0, SK_UNBOUNDED,
             "strain limit: no edge gets longer than rest times 1 + this; \"infinite\" is none"),
-    SK_REAL(
-        cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
-        "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
-        "\"infinite\" is none"),
+    SK_REAL(cloth_params, tether, "stretch.tether", "", 0, 0, SK_UNBOUNDED,
+            "no particle gets farther from a pin, or from any 5 or 20 edges away, than along the cloth, times 1 + this; "
+            "\"infinite\" is none"),
     SK_REAL(cloth_params, tear, "stretch.tear", "", 0, 0, SK_UNBOUNDED,
             "stretch at which an edge gives way, with the faces beside it, when a step is over; 0: never"),
     SK_REAL(cloth_params, thickness, "contact.thickness", "m", 0, 0, 1e3,
@@ -107,8 +107,8 @@ typedef struct tailor {
     skein_error *error;
     sk_sheet sheet;
     sk_springs springs;
-    sk_lines lines; /* of what lies in strips */
-    sk_held_hubs held; /* of a mesh that has aggregates */
+    sk_lines lines;          /* of what lies in strips */
+    sk_held_hubs held;       /* of a mesh that has aggregates */
     sk_coarse_grid coarsest; /* of its coarse grids; none where row_step is 0 */
     bool *pinned;
     double *mass;
@@ -189,7 +189,8 @@ static skein_status put_in_order(tailor *t) {
         (!grid.rows && !sk_quads_find(&t->sheet, &t->springs, t->pinned, &grid)))
         return sk_fail_memory(t->error, "the order of springs");
     if (grid.rows) {
-        skein_status status = lay_across(t, &grid) ? put_in_strips(t, &grid) : sk_fail_memory(t->error, "the order of springs");
+        skein_status status =
+            lay_across(t, &grid) ? put_in_strips(t, &grid) : sk_fail_memory(t->error, "the order of springs");
         if (!status && !sk_lines_find(&t->lines, &t->sheet, grid.rows, grid.columns, grid.place))
             status = sk_fail_memory(t->error, "the lines of the grid");
         sk_release(&t->world->allocator, grid.place);
@@ -241,7 +242,8 @@ static skein_status add_spans(tailor *t) {
     double axes[2][3] = {{1, 0, 0}, {0, 0, 1}};
     sk_points_transform(axes, 2, 1, t->params->rotation, (const double[3]){0, 0, 0});
     if (pinned && !(t->params->tear > 0)) {
-        skein_status status = sk_aggregates_add(&t->sheet, t->mass, t->pinned, t->rank, t->world, t->body, &t->held, t->error);
+        skein_status status =
+            sk_aggregates_add(&t->sheet, t->mass, t->pinned, t->rank, t->world, t->body, &t->held, t->error);
         if (status) return status;
     }
     return sk_spans_add(&t->sheet, (const double(*)[3])axes, t->rank, !pinned, t->world, t->body, t->error);
@@ -352,7 +354,8 @@ static bool measure_tethers(tailor *t, sk_geodesic *geodesic, const bool *source
 
 /* Whether a particle is a few edges from one of its anchors: nearer than the coarsest grid's own particles. */
 static bool is_near(const tailor *t, const tethers *all, size_t i) {
-    double edge = t->held.is ? t->held.edge : fmax(sk_lines_edge(&t->lines, 0, 0, true), sk_lines_edge(&t->lines, 0, 0, false));
+    double edge =
+        t->held.is ? t->held.edge : fmax(sk_lines_edge(&t->lines, 0, 0, true), sk_lines_edge(&t->lines, 0, 0, false));
     bool near = false;
     for (size_t k = 0; k < all->anchors; k++) near |= (double)all->lengths[i * all->anchors + k] < (NEAR + 0.5) * edge;
     return near;
@@ -366,14 +369,15 @@ static skein_status add_some_tethers(tailor *t, const tethers *all, sk_limit_ord
     for (size_t i = 0; i < all->count; i++) {
         uint32_t particle = all->particles[i * (1 + anchors)] - t->body->first_particle;
         bool taken = order != SK_LIMIT_BEFORE_COARSE ? is_near(t, all, i)
-                     : t->held.is                  ? t->held.is[particle]
-                                                   : sk_coarse_has(&t->coarsest, &t->lines, particle);
+                     : t->held.is                    ? t->held.is[particle]
+                                                     : sk_coarse_has(&t->coarsest, &t->lines, particle);
         if (!taken) continue;
         memcpy(some->particles + some->count * (1 + anchors), all->particles + i * (1 + anchors),
                (1 + anchors) * sizeof *all->particles);
         memcpy(some->lengths + some->count++ * anchors, all->lengths + i * anchors, anchors * sizeof *all->lengths);
     }
-    return sk_world_add_tethers(t->world, t->body, order, some->count, anchors, some->particles, some->lengths, t->error);
+    return sk_world_add_tethers(t->world, t->body, order, some->count, anchors, some->particles, some->lengths,
+                                t->error);
 }
 
 static bool allocate_tethers(tailor *t, tethers *all, size_t count, size_t anchors) {
@@ -398,10 +402,11 @@ static skein_status add_tethers_of_coarse(tailor *t, const tethers *all) {
     static const sk_limit_order orders[] = {SK_LIMIT_BEFORE_COARSE, SK_LIMIT_AFTER_COARSE};
     tethers some;
     bool square = t->held.is || sk_lines_square(&t->lines);
-    skein_status status = allocate_tethers(t, &some, all->count, all->anchors)
-                              ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count, all->anchors,
-                                                     all->particles, all->lengths, t->error)
-                              : sk_fail_memory(t->error, "tethers");
+    skein_status status =
+        allocate_tethers(t, &some, all->count, all->anchors)
+            ? sk_world_add_tethers(t->world, t->body, square ? SK_LIMIT_WITHOUT_COARSE : SK_LIMIT_SELDOM, all->count,
+                                   all->anchors, all->particles, all->lengths, t->error)
+            : sk_fail_memory(t->error, "tethers");
     for (int i = 0; i < (square ? 2 : 1) && !status; i++) status = add_some_tethers(t, all, orders[i], &some);
     release_tethers(t, &some);
     return status;
@@ -421,8 +426,7 @@ static skein_status add_tethers(tailor *t, const bool *to) {
     bool *source = sk_allocate(allocator, count * sizeof *source);
     tethers all;
     bool good = allocate_tethers(t, &all, tethered, anchors) && geodesic && distance && nearest && source;
-    if (good && anchors < pins)
-        good = measure_tethers(t, geodesic, to, 0, &all, distance, nearest);
+    if (good && anchors < pins) good = measure_tethers(t, geodesic, to, 0, &all, distance, nearest);
     for (size_t i = 0, k = 0; i < count && good && anchors == pins; i++) {
         if (!to[i]) continue;
         memset(source, 0, count * sizeof *source);
@@ -430,10 +434,11 @@ static skein_status add_tethers(tailor *t, const bool *to) {
         good = measure_tethers(t, geodesic, source, k++, &all, distance, nearest);
     }
     sk_limit_order order = t->lines.area ? SK_LIMIT_SELDOM : SK_LIMIT_LAST;
-    skein_status status = !good                  ? sk_fail_memory(t->error, "tethers")
-                          : t->coarsest.row_step || t->held.is ? add_tethers_of_coarse(t, &all)
-                                                 : sk_world_add_tethers(t->world, t->body, order, tethered, anchors,
-                                                                        all.particles, all.lengths, t->error);
+    skein_status status =
+        !good ? sk_fail_memory(t->error, "tethers")
+        : t->coarsest.row_step || t->held.is
+            ? add_tethers_of_coarse(t, &all)
+            : sk_world_add_tethers(t->world, t->body, order, tethered, anchors, all.particles, all.lengths, t->error);
     sk_geodesic_release(geodesic);
     sk_release(allocator, distance);
     sk_release(allocator, nearest);
@@ -494,8 +499,8 @@ static bool live(const void *data, const char *field) {
     const cloth_params *params = data;
     if (!strcmp(field, "bend.stiffness") || !strcmp(field, "bend.damping")) return params->bending == BY_SPRINGS;
     if (!strcmp(field, "bend.rigidity")) return params->bending != BY_SPRINGS;
-    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness",
-                                        "shear.damping",     "stretch.limit",   "stretch.tether", "stretch.tear", "look"};
+    static const char *const names[] = {"stretch.stiffness", "stretch.damping", "shear.stiffness", "shear.damping",
+                                        "stretch.limit",     "stretch.tether",  "stretch.tear",    "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;

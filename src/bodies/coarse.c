@@ -16,10 +16,10 @@
  * and 2.6, which is no better and takes a fifth longer. */
 enum {
     MOST_GRIDS = 8,
-    LEAST_ROWS = 3, /* of the coarsest grid */
+    LEAST_ROWS = 3,  /* of the coarsest grid */
     LEAST_WIDTH = 4, /* columns a strip: smaller sheets, to 48, are as firm with spans, and faster */
-    LONG = 5,       /* neighbours on: the longest distances */
-    SWEEPS = 2      /* of a grid's own distances, forth and back */
+    LONG = 5,        /* neighbours on: the longest distances */
+    SWEEPS = 2       /* of a grid's own distances, forth and back */
 };
 
 /* A grid under construction, and how much mass goes with each of its particles. */
@@ -32,7 +32,7 @@ typedef struct level {
 typedef struct builder {
     const sk_lines *lines;
     sk_allocator *allocator;
-    size_t width; /* columns a strip */
+    size_t width;                /* columns a strip */
     level level[MOST_GRIDS + 1]; /* the first: all particles */
     size_t count;
 } builder;
@@ -192,8 +192,8 @@ static skein_status add_batch(const builder *b, const level *l, size_t n, const 
         }
     for (size_t e = 0; e < 3 * d.count && !status; e++) rest[e] = (real)d.rest[e / d.count * d.most + e % d.count];
     if (!status)
-        status = sk_world_add_body_batch(world, body, &sk_coarse_distance, "coarse", (sk_material){0, 0}, false, d.count,
-                                         d.pairs, rest, NULL, error);
+        status = sk_world_add_body_batch(world, body, &sk_coarse_distance, "coarse", (sk_material){0, 0}, false,
+                                         d.count, d.pairs, rest, NULL, error);
     if (!status && !sk_world_bound_coarse(world, body, &body->tether_bound, coarse))
         status = sk_fail_memory(error, "coarse grid");
     sk_release(b->allocator, d.pairs);

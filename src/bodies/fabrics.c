@@ -25,8 +25,8 @@
 
 #define AS_IT_IS NAN
 
-static const char *const names[] = {"density", "stretch.stiffness", "shear.stiffness", "bend.rigidity", "stretch.tether",
-                                    "contact.thickness", "contact.friction"};
+static const char *const names[] = {"density",        "stretch.stiffness", "shear.stiffness", "bend.rigidity",
+                                    "stretch.tether", "contact.thickness", "contact.friction"};
 enum { NAMES = sizeof names / sizeof *names };
 
 static const double values[][NAMES] = {

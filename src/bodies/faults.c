@@ -35,8 +35,7 @@ static bool warn_about_parts(skein_world *world, const char *label, const sk_she
     uint32_t *parent = sk_allocate(&world->allocator, sheet->particle_count * sizeof *parent);
     if (!parent) return false;
     for (size_t i = 0; i < sheet->particle_count; i++) parent[i] = (uint32_t)i;
-    for (size_t e = 0; e < springs->edge_count; e++)
-        sk_union_join(parent, springs->edges[e].a, springs->edges[e].b);
+    for (size_t e = 0; e < springs->edge_count; e++) sk_union_join(parent, springs->edges[e].a, springs->edges[e].b);
     size_t parts = 0, second = 0;
     for (size_t i = 0; i < sheet->particle_count; i++)
         if (parent[i] == i && sheet->particle_area[i] > 0 && ++parts == 2) second = i;
@@ -99,12 +98,14 @@ static double length_of(const sk_sheet *sheet, const sk_edge *edge) {
 
 /* Edges that are far shorter than others, as scanned meshes have them: next to no mass is at their ends, and what a sweep leaves of
  * the long ones beside them stretches them manyfold. */
-static void warn_about_short_edges(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs) {
+static void warn_about_short_edges(skein_world *world, const char *label, const sk_sheet *sheet,
+                                   const sk_springs *springs) {
     const double share = 0.1; // of the mean
     double mean = 0, least = HUGE_VAL;
     size_t count = 0;
     const sk_edge *example = NULL;
-    for (size_t e = 0; e < springs->edge_count; e++) mean += length_of(sheet, &springs->edges[e]) / (double)springs->edge_count;
+    for (size_t e = 0; e < springs->edge_count; e++)
+        mean += length_of(sheet, &springs->edges[e]) / (double)springs->edge_count;
     for (size_t e = 0; e < springs->edge_count; e++) {
         const double length = length_of(sheet, &springs->edges[e]);
         if (!(length < share * mean)) continue;
@@ -112,10 +113,11 @@ static void warn_about_short_edges(skein_world *world, const char *label, const 
         if (length < least) least = length, example = &springs->edges[e];
     }
     if (count)
-        sk_world_log(world, SKEIN_LOG_WARNING,
-                     "%s: %zu edge%s shorter than a tenth of the mean, which is %.2g m, such as %u-%u with %.2g m; such are stretched "
-                     "most: weld (a distance, such as %.1g) joins what is nearer",
-                     label, count, count == 1 ? " is" : "s are", mean, example->a, example->b, least, share * mean);
+        sk_world_log(
+            world, SKEIN_LOG_WARNING,
+            "%s: %zu edge%s shorter than a tenth of the mean, which is %.2g m, such as %u-%u with %.2g m; such are stretched "
+            "most: weld (a distance, such as %.1g) joins what is nearer",
+            label, count, count == 1 ? " is" : "s are", mean, example->a, example->b, least, share * mean);
 }
 
 skein_status sk_report_faults(skein_world *world, const char *label, const sk_sheet *sheet, const sk_springs *springs,

@@ -37,9 +37,9 @@ typedef struct place {
 struct sk_geodesic {
     sk_allocator *allocator;
     const sk_sheet *sheet;
-    parabola *lowest;       /* of a grid, which has none of the following: a row's */
-    size_t *start;          /* of a particle's triangles in `around`; particles + 1 */
-    uint32_t (*around)[2];  /* the other two corners */
+    parabola *lowest;      /* of a grid, which has none of the following: a row's */
+    size_t *start;         /* of a particle's triangles in `around`; particles + 1 */
+    uint32_t (*around)[2]; /* the other two corners */
     place *places;
     struct {
         heap_entry *data;
@@ -48,7 +48,7 @@ struct sk_geodesic {
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } seen; /* by searches that end near where they begin */
+    } seen;     /* by searches that end near where they begin */
     bool clear; /* no particle has a distance */
 };
 
@@ -266,8 +266,8 @@ bool sk_geodesic_from(sk_geodesic *g, const bool *source, double *distance, uint
     return true;
 }
 
-bool sk_geodesic_near(sk_geodesic *g, uint32_t source, double most, void (*visit)(void *user, uint32_t particle, double distance),
-                      void *user) {
+bool sk_geodesic_near(sk_geodesic *g, uint32_t source, double most,
+                      void (*visit)(void *user, uint32_t particle, double distance), void *user) {
     if (!g->clear) clear(g);
     g->seen.count = 0;
     g->places[source].distance = 0;
@@ -285,7 +285,8 @@ bool sk_geodesic_near(sk_geodesic *g, uint32_t source, double most, void (*visit
     for (size_t i = 0; i < g->seen.count; i++) {
         const uint32_t one = g->seen.data[i];
         for (size_t k = g->start[one]; k < g->start[one + 1]; k++)
-            for (int c = 0; c < 2; c++) g->places[g->around[k][c]].distance = INFINITY, g->places[g->around[k][c]].settled = false;
+            for (int c = 0; c < 2; c++)
+                g->places[g->around[k][c]].distance = INFINITY, g->places[g->around[k][c]].settled = false;
         g->places[one].distance = INFINITY, g->places[one].settled = false;
     }
     g->heap.count = 0;

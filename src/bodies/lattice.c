@@ -185,9 +185,9 @@ static skein_status add_springs(sk_block *block, const lattice_params *params) {
 
 static bool live(const void *params, const char *field) {
     (void)params;
-    static const char *const names[] = {"structural.stiffness", "structural.damping", "structural.limit",
-                                        "shear.stiffness",      "shear.damping",      "bending.stiffness",
-                                        "bending.damping",      "look"};
+    static const char *const names[] = {
+        "structural.stiffness", "structural.damping", "structural.limit", "shear.stiffness",
+        "shear.damping",        "bending.stiffness",  "bending.damping",  "look"};
     for (size_t i = 0; i < sizeof names / sizeof *names; i++)
         if (!strcmp(field, names[i])) return true;
     return false;

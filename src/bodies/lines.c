@@ -176,10 +176,10 @@ static skein_status finish(maker *m, skein_world *world, const sk_constraint_typ
     sk_elements *made = &m->made;
     for (size_t r = 1; r < m->rests && good; r++)
         memmove(made->rest + r * made->count, made->rest + r * m->most, made->count * sizeof *made->rest);
-    skein_status status =
-        good ? sk_world_add_body_batch(world, m->body, type, label, (sk_material){stiffness, 0}, false, made->count,
-                                       made->particle, made->rest, made->scale, error)
-             : sk_fail_memory(error, label);
+    skein_status status = good
+                              ? sk_world_add_body_batch(world, m->body, type, label, (sk_material){stiffness, 0}, false,
+                                                        made->count, made->particle, made->rest, made->scale, error)
+                              : sk_fail_memory(error, label);
     if (!status && type != &sk_distance) {
         sk_world_take_seldom(m->body, quickness_of(m, world));
         sk_world_sweep_both_ways(m->body);
@@ -256,8 +256,8 @@ skein_status sk_lines_add_bending(const sk_lines *lines, skein_world *world, sk_
 /* Length of an edge along a row or column; 0 where no cell is beside it. */
 static double edge_length(const sk_lines *lines, size_t row, size_t column, int direction) {
     int64_t r = (int64_t)row, c = (int64_t)column;
-    bool there = area_at(lines, r, c) > 0 ||
-                 (direction == ALONG_ROW ? area_at(lines, r - 1, c) : area_at(lines, r, c - 1)) > 0;
+    bool there =
+        area_at(lines, r, c) > 0 || (direction == ALONG_ROW ? area_at(lines, r - 1, c) : area_at(lines, r, c - 1)) > 0;
     if (!there) return 0;
     size_t place = place_at(lines, row, column), next = direction == ALONG_ROW ? place + 1 : place + lines->columns;
     if (lines->particle[place] == UINT32_MAX || lines->particle[next] == UINT32_MAX) return 0; // of one triangle

@@ -121,7 +121,8 @@ static bool take_in_order_of(sk_allocator *allocator, struct sk_spring_list *lis
 static bool sort_by_direction(sk_allocator *allocator, struct sk_spring_list *list, const uint32_t *place) {
     keyed *keys = sk_allocate(allocator, list->count * sizeof *keys);
     for (size_t i = 0; i < list->count && keys; i++) {
-        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1], at = place ? place[a] : a, to = place ? place[b] : b;
+        uint32_t a = list->pairs[2 * i], b = list->pairs[2 * i + 1], at = place ? place[a] : a,
+                 to = place ? place[b] : b;
         uint32_t low = at < to ? at : to, step = at < to ? to - at : at - to;
         if (low != at) list->pairs[2 * i] = b, list->pairs[2 * i + 1] = a;
         keys[i] = (keyed){(uint64_t)step << 32 | low, (uint32_t)i};
@@ -179,7 +180,8 @@ static bool sort_outward(sk_allocator *allocator, struct sk_spring_list *list, c
         bool later = !(fabs(a - b) > 0.5 * (double)list->rest[from]);
         keys[i].key = (uint64_t)later << 63 | key_of(0.5 * (a + b));
     }
-    good = good && sort_keys(allocator, &keys, count) && take_in_turns(allocator, &keys, count) && take_in_order_of(allocator, list, keys);
+    good = good && sort_keys(allocator, &keys, count) && take_in_turns(allocator, &keys, count) &&
+           take_in_order_of(allocator, list, keys);
     sk_release(allocator, keys);
     return good;
 }
@@ -224,7 +226,8 @@ static bool find_distances(const sk_sheet *sheet, const bool *pinned, double *di
         sk_release(sheet->allocator, nearest);
     }
     for (size_t i = 0; i < count && good; i++)
-        if (!pins || !(distance[i] < INFINITY)) distance[i] = (pins ? 1e12 : 0) + sheet->position[i][along.number] - along.low;
+        if (!pins || !(distance[i] < INFINITY))
+            distance[i] = (pins ? 1e12 : 0) + sheet->position[i][along.number] - along.low;
     return good;
 }
 

@@ -151,7 +151,8 @@ static void find_nearest(const bool *pins, size_t count, uint32_t *nearest) {
 
 /* Each of a few pins tethers every particle; with many, only the nearest one does. The few are listed first: searching
  * for them for each particle made a rope of 100,000 take seconds. */
-static skein_status add_tethers(skein_world *world, sk_body *body, const void *data, const bool *to, skein_error *error) {
+static skein_status add_tethers(skein_world *world, sk_body *body, const void *data, const bool *to,
+                                skein_error *error) {
     const rope_params *params = data;
     sk_allocator *allocator = &world->allocator;
     size_t count = (size_t)params->count, pins = 0, free = 0, filled = 0, few[MOST_SINGLE_ANCHORS];
@@ -216,7 +217,8 @@ static skein_status build(skein_world *world, sk_body *body, const void *data, c
     if (!status) status = lay(&block, params, &length);
     double link = length / (double)(params->count - 1);
     if (!status)
-        status = sk_block_add_particles(&block, params->density * length, params->velocity, params->pins, sk_rope_choose_words);
+        status = sk_block_add_particles(&block, params->density * length, params->velocity, params->pins,
+                                        sk_rope_choose_words);
     const sk_block_springs bend = {{2, 0, 0}, 2 * link, 0.5 / link}, stretch = {{1, 0, 0}, link, 1 / link};
     if (!status) status = sk_block_add_springs(&block, "bend", params->bend, false, &bend, 1);
     if (!status) status = sk_block_add_springs(&block, "stretch", params->stretch, true, &stretch, 1);

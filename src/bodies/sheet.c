@@ -56,8 +56,7 @@ skein_status sk_sheet_from_mesh(sk_sheet *sheet, sk_allocator *allocator, const 
                        mesh->vertex_count, mesh->face_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         if (!(fabs(mesh->positions[i]) <= 1e12))
-            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "vertex %zu: coordinates must be finite, under 1e12",
-                           i / 3);
+            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "vertex %zu: coordinates must be finite, under 1e12", i / 3);
     size_t corner = 0;
     for (size_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = mesh->face_sizes[f];

@@ -156,8 +156,8 @@ skein_status sk_sheet_select(const char *text, const sk_sheet *sheet, const sk_s
     return status;
 }
 
-skein_status sk_sheet_choose_words(const char *words, const sk_sheet *sheet, const sk_springs *springs, const char *where,
-                                   bool *chosen, skein_error *error) {
+skein_status sk_sheet_choose_words(const char *words, const sk_sheet *sheet, const sk_springs *springs,
+                                   const char *where, bool *chosen, skein_error *error) {
     selector s = {sheet, springs, where, chosen, NULL, error};
     s.mark = sk_allocate(sheet->allocator, sheet->particle_count * sizeof *s.mark);
     skein_status status = s.mark ? choose_words(&s, words) : sk_fail_memory(error, where);

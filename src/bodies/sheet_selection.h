@@ -17,7 +17,7 @@ skein_status sk_sheet_select(const char *text, const sk_sheet *sheet, const sk_s
 
 /* The words alone, for a sheet of which there are its particles' positions, its faces of particles, and, of a grid, its
  * vertices. */
-skein_status sk_sheet_choose_words(const char *words, const sk_sheet *sheet, const sk_springs *springs, const char *where,
-                                   bool *chosen, skein_error *error);
+skein_status sk_sheet_choose_words(const char *words, const sk_sheet *sheet, const sk_springs *springs,
+                                   const char *where, bool *chosen, skein_error *error);
 
 #endif

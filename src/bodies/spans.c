@@ -23,7 +23,7 @@ typedef struct faces {
     uint32_t (*corner)[3], (*beside)[3]; /* UINT32_MAX: nobody */
     size_t count;
     double (*side)[3]; /* lengths, m */
-    size_t *start; /* of a particle's triangles in `around`; particles + 1 */
+    size_t *start;     /* of a particle's triangles in `around`; particles + 1 */
     uint32_t *around;
 } faces;
 
@@ -150,13 +150,17 @@ static bool set_out(const faces *f, uint32_t v, const double direction[3], strip
         if (!(square > 1e-12 * la * la * lb * lb)) continue;
         cross(direction, b, n1);
         cross(a, direction, n2);
-        double of_a = dot(n1, normal) / square, of_b = dot(n2, normal) / square; // direction = of_a a + of_b b + a normal
+        double of_a = dot(n1, normal) / square,
+               of_b = dot(n2, normal) / square; // direction = of_a a + of_b b + a normal
         if (of_a < 0 || of_b < 0 || !(of_a + of_b > 0)) continue;
         double x[3], size = 0;
         for (int n = 0; n < 3; n++) x[n] = of_a * a[n] + of_b * b[n], size += x[n] * x[n];
         size = sqrt(size);
         double ax = dot(a, x) / size, bx = dot(b, x) / size;
-        *s = (strip){t, c[(k + 2) % 3], c[(k + 1) % 3], {bx, sqrt(fmax(0, lb * lb - bx * bx))},
+        *s = (strip){t,
+                     c[(k + 2) % 3],
+                     c[(k + 1) % 3],
+                     {bx, sqrt(fmax(0, lb * lb - bx * bx))},
                      {ax, -sqrt(fmax(0, la * la - ax * ax))}};
         return true;
     }
@@ -182,7 +186,8 @@ static bool go_on(const faces *f, strip *s) {
     const uint32_t apex = c[k];
     const double *side = f->side[next], after = side[k], before = side[(k + 2) % 3];
     const bool left_first = c[(k + 1) % 3] == s->left;
-    const point p = lay(s->at_left, s->at_right, side[(k + 1) % 3], left_first ? after : before, left_first ? before : after);
+    const point p =
+        lay(s->at_left, s->at_right, side[(k + 1) % 3], left_first ? after : before, left_first ? before : after);
     s->triangle = next;
     if (p.y >= 0) s->left = apex, s->at_left = p;
     else s->right = apex, s->at_right = p;
@@ -263,8 +268,8 @@ static size_t find_spans(const faces *f, const double (*axes)[3], const uint32_t
     return count;
 }
 
-static skein_status add_batch(const faces *f, skein_world *world, sk_body *body, const span *spans, size_t count, bool scattered,
-                              skein_error *error) {
+static skein_status add_batch(const faces *f, skein_world *world, sk_body *body, const span *spans, size_t count,
+                              bool scattered, skein_error *error) {
     uint32_t *pairs = sk_allocate(f->allocator, 2 * count * sizeof *pairs);
     real *rest = sk_allocate(f->allocator, count * sizeof *rest);
     uint32_t *place = sk_allocate(f->allocator, count * sizeof *place);
@@ -293,13 +298,13 @@ static bool is_closed(const faces *f) {
     return closed;
 }
 
-skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, bool may_grow, skein_world *world,
-                          sk_body *body, skein_error *error) {
+skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, bool may_grow,
+                          skein_world *world, sk_body *body, skein_error *error) {
     faces f;
     span *spans = sk_allocate(sheet->allocator, DIRECTIONS * sheet->particle_count * sizeof *spans);
     skein_status status = find_faces(&f, sheet) && spans ? SKEIN_OK : sk_fail_memory(error, "span");
     const bool bounded = !status && !(may_grow && is_closed(&f));
-    for (int i = SPANS; i-- > 0 && bounded && !status;) { // long ones first
+    for (int i = SPANS; i-- > 0 && bounded && !status;) {                             // long ones first
         if ((size_t)span_edges[i] * span_edges[i] >= sheet->particle_count) continue; // it would lead all around
         size_t count = find_spans(&f, axes, rank, span_edges[i], spans);
         if (count) status = add_batch(&f, world, body, spans, count, !rank, error);

@@ -12,7 +12,7 @@
 
 /* Bounds that the body's tether bound holds. `axes`: two directions in space that walks follow where the sheet lets
  * them; rank[particle]: its place in memory, in whose order spans come, or NULL: neighbours far apart; `may_grow`: of a closed sheet, as a balloon is, there are none. */
-skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, bool may_grow, skein_world *world,
-                          sk_body *body, skein_error *error);
+skein_status sk_spans_add(const sk_sheet *sheet, const double (*axes)[3], const uint32_t *rank, bool may_grow,
+                          skein_world *world, sk_body *body, skein_error *error);
 
 #endif

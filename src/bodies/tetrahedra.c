@@ -11,8 +11,8 @@
 
 #include "bodies/body.h"
 #include "bodies/order.h"
-#include "particles/selection.h"
 #include "bodies/sheet.h"
+#include "particles/selection.h"
 
 typedef struct tetrahedra_params {
     char *mesh;
@@ -293,9 +293,8 @@ static skein_status find_faces(builder *b) {
         next = i + 1;
         while (next < 4 * b->count && !compare_faces(&b->faces[i], &b->faces[next])) next++;
         if (next - i > 2)
-            return sk_fail(b->error, SKEIN_ERROR_MESH, "mesh",
-                           "%zu tetrahedra share the face %u %u %u: at most two can", next - i, b->faces[i].key[0],
-                           b->faces[i].key[1], b->faces[i].key[2]);
+            return sk_fail(b->error, SKEIN_ERROR_MESH, "mesh", "%zu tetrahedra share the face %u %u %u: at most two can",
+                           next - i, b->faces[i].key[0], b->faces[i].key[1], b->faces[i].key[2]);
         if (next - i == 1) b->faces[b->face_count++] = b->faces[i];
     }
     return SKEIN_OK;

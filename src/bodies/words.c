@@ -50,7 +50,8 @@ static skein_status choose_of_sheet(skein_world *world, const sk_body *body, dou
     sheet.particle_of_vertex = sk_allocate(allocator, (body->vertex_count + 1) * sizeof *sheet.particle_of_vertex);
     sheet.face_start = sk_allocate(allocator, (body->face_count + 1) * sizeof *sheet.face_start);
     sheet.corners = sk_allocate(allocator, (body->face_vertex_count + 1) * sizeof *sheet.corners);
-    sheet.face_area = sk_allocate(allocator, (body->face_count + 1) * sizeof *sheet.face_area); // springs' scales: not asked for
+    sheet.face_area =
+        sk_allocate(allocator, (body->face_count + 1) * sizeof *sheet.face_area); // springs' scales: not asked for
     bool good = sheet.particle_of_vertex && sheet.face_start && sheet.corners && sheet.face_area;
     for (size_t v = 0; v < body->vertex_count && good; v++)
         sheet.particle_of_vertex[v] = body->particle_of_vertex[v] - body->first_particle;
@@ -73,7 +74,8 @@ skein_status sk_body_choose_words(skein_world *world, const sk_body *body, doubl
     const sk_object *object = object_of(world, body);
     const char *kind = object ? object->kind->name : "";
     if (object && object->body_type->is_sheet) return choose_of_sheet(world, body, position, words, chosen, error);
-    sk_block block = {.world = world, .error = error, .count = body->particle_count, .position = position, .pinned = chosen};
+    sk_block block = {
+        .world = world, .error = error, .count = body->particle_count, .position = position, .pinned = chosen};
     if (!strcmp(kind, "rope")) return sk_rope_choose_words(&block, words);
     if (!strcmp(kind, "lattice")) {
         skein_value grid = sk_field_load(skein_field_find(object->kind, "grid", NULL), object->params);
@@ -81,9 +83,10 @@ skein_status sk_body_choose_words(skein_world *world, const sk_body *body, doubl
         return sk_lattice_choose_words(&block, words);
     }
     if (strcmp(words, "all") != 0)
-        return sk_fail(error, SKEIN_ERROR_NAME, "pins",
-                       "'%s' names no part of a %s; expected numbers, \"all\", \"box x y z x y z\" or \"sphere x y z radius\"", words,
-                       kind);
+        return sk_fail(
+            error, SKEIN_ERROR_NAME, "pins",
+            "'%s' names no part of a %s; expected numbers, \"all\", \"box x y z x y z\" or \"sphere x y z radius\"",
+            words, kind);
     memset(chosen, 1, body->particle_count * sizeof *chosen);
     return SKEIN_OK;
 }

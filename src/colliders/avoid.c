@@ -35,7 +35,8 @@ void SK_KERNEL(avoid)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
             collider->type->probe[SK_THIS_ISA](collider->params, &pose, &p, &contact);
             sk_mask near = moved & sk_more(sk_splat(clearance), contact.distance);
             if (!sk_any(near)) continue;
-            s = vec4_of(pick3(near, plus(xyz(s), kept_off(contact.normal, contact.distance, clearance, dv)), xyz(s)), s.w);
+            s = vec4_of(pick3(near, plus(xyz(s), kept_off(contact.normal, contact.distance, clearance, dv)), xyz(s)),
+                        s.w);
         }
         sk_store_part(run->vector[op->dst], slot, packed, s);
     }

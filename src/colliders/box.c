@@ -31,11 +31,12 @@ SK_INLINE sk_contact box_probe(box_params p, sk_pose where, vec3 x) {
     num inside = pick(y_first, over.y, over.x);
     flag z_first = over.z > inside;
     inside = pick(z_first, over.z, inside);
-    vec3 face = vec3_of(pick(either(y_first, z_first), 0, 1), pick(z_first, 0, pick(y_first, 1, 0)), pick(z_first, 1, 0));
+    vec3 face =
+        vec3_of(pick(either(y_first, z_first), 0, 1), pick(z_first, 0, pick(y_first, 1, 0)), pick(z_first, 1, 0));
     num below = pick(outside, away, 1);
-    vec3 normal = vec3_of(side.x * pick(outside, beyond.x / below, face.x),
-                          side.y * pick(outside, beyond.y / below, face.y),
-                          side.z * pick(outside, beyond.z / below, face.z));
+    vec3 normal =
+        vec3_of(side.x * pick(outside, beyond.x / below, face.x), side.y * pick(outside, beyond.y / below, face.y),
+                side.z * pick(outside, beyond.z / below, face.z));
     return contact_of(turned(where, normal), pick(outside, away, inside));
 }
 // ---- end of arithmetic ----

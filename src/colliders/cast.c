@@ -69,7 +69,8 @@ static double cast(caster *c, double most, double inside, double normal[3]) {
         }
         double step = fabs(d);
         // (of what is not convex, another part of it may be in front of that plane, or as near)
-        if (d > 0 && lean > 0 && c->collider->type->passing != SK_ANY_SHAPE) step = lean * longest > 1 ? d / lean : longest * d;
+        if (d > 0 && lean > 0 && c->collider->type->passing != SK_ANY_SHAPE)
+            step = lean * longest > 1 ? d / lean : longest * d;
         step = fmin(fmax(step, fmax(shortest * (size + t), tolerance)), size + t + 1);
         probe_way(c, t, step, on_way);
         double from = t, at_from = d;

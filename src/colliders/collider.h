@@ -72,7 +72,7 @@ typedef struct sk_collider_type {
     /* Distance and normal of a vector of particles; a version for each instruction set, which its own kernels call. */
     sk_probe *probe[SK_ISA_COUNT];
     sk_probe_near *near[SK_ISA_COUNT]; /* NULL where `probe` costs little anyway */
-    bool deforms; /* its surface moves by itself, too */
+    bool deforms;                      /* its surface moves by itself, too */
     /* What it looks like, into a shape that is zero before; NULL: its surface is found by `probe`. */
     void (*shape)(const void *params, skein_shape *shape);
     /* Whether a value at x had to be guarded (formula/graph.h): for the statistics; NULL: there is nothing to guard. */
@@ -86,7 +86,7 @@ typedef struct sk_collider_type {
     void (*begin)(const void *params, double time, double dt);
     bool (*changes)(const void *params);
     void (*follow)(const void *params, double time);
-    void (*stop)(const void *params); /* it is where it was led to, at once */
+    void (*stop)(const void *params);      /* it is where it was led to, at once */
     double (*fastest)(const void *params); /* what of it is led fastest in the present step, m/s */
     sk_passing passing;
     /* Of types that know better than their probes do where they are passed, else NULL: where the way from a to b first crosses the surface, as
@@ -94,8 +94,9 @@ typedef struct sk_collider_type {
     double (*cross)(const void *params, const sk_pose *pose, const double a[3], const double b[3], double normal[3]);
     void (*ball)(const void *params, const sk_pose *pose, sk_vec3 *middle, real *radius);
     bool (*is_shaped_by)(const char *field); /* whether a field counts only then; NULL: none does */
-    struct sk_trimesh *(*surface)(const void *params); /* its triangles, for whoever draws, moves or sits on them; NULL: it has none */
-    double (*scale)(const void *params);               /* of types with a surface: the factor on its coordinates */
+    struct sk_trimesh *(*surface)(
+        const void *params); /* its triangles, for whoever draws, moves or sits on them; NULL: it has none */
+    double (*scale)(const void *params); /* of types with a surface: the factor on its coordinates */
     /* Of arithmetic: see colliders/shape.h. A file defines vec4 probe@(vec3 p): the unit normal out of the solid, and the distance in w; and, where the surface
      * moves by itself, DEFORMS@ and float speed@, what it has along the normal then. What every collider has is pose@
      * (colliders/pose.glsl). */
@@ -118,9 +119,9 @@ typedef struct sk_collider {
     const char *label;
     double warned_mass; /* that it was too light was said when its mass was this */
     sk_travel travel;
-    bool led;           /* it stands in a frame that moves: */
-    sk_frame frame;     /* where that puts it, after its own fields, at the end of the present step */
-    sk_only only;       /* whom it meets, found when a plan is written */
+    bool led;       /* it stands in a frame that moves: */
+    sk_frame frame; /* where that puts it, after its own fields, at the end of the present step */
+    sk_only only;   /* whom it meets, found when a plan is written */
 } sk_collider;
 
 /* Fields of sk_collider_common. */
@@ -140,7 +141,8 @@ bool sk_collider_changed(sk_collider *collider);
 void sk_collider_begin(sk_collider *collider, double time, double dt);
 /* Before a step begins at `time`, the frame that it is led by: where it is now, what of the step's way is no way, but where
  * the collider begins (it is carried), and where it is at the end. */
-void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried, const sk_frame *end);
+void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried,
+                      const sk_frame *end);
 /* It is where its fields say, at once. */
 void sk_collider_stop(sk_collider *collider);
 /* Whether it may stand elsewhere in every substep. */
@@ -173,12 +175,12 @@ extern const sk_kernels sk_contact_filter_more;
 extern const sk_kernels sk_contact_sweep;
 typedef struct sk_swept {
     const sk_collider *collider;
-    sk_pose pose;                        /* at the end */
-    real turn[9];                        /* what the collider did to points that go along with it, */
-    sk_vec3 shift;                       /* and then this */
+    sk_pose pose;  /* at the end */
+    real turn[9];  /* what the collider did to points that go along with it, */
+    sk_vec3 shift; /* and then this */
     bool moves, rubs;
-    sk_vec3 middle;                      /* of the ball that its surface is in, */
-    real radius;                         /* and the thickness */
+    sk_vec3 middle; /* of the ball that its surface is in, */
+    real radius;    /* and the thickness */
 } sk_swept;
 sk_swept sk_swept_begin(const sk_collider *collider, double from, double to, bool rubs);
 /* Whether the way from `start`, as the collider sees it, to x crosses the surface; x is then where it ends. */

@@ -41,7 +41,8 @@ SK_KERNELS(sk_probe_sixteen, probe_sixteen);
 #include "colliders/start.h"
 
 /* Probes a part of a block; false where nobody touches. */
-SK_INLINE bool meet(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose, size_t slot, encounter *e) {
+SK_INLINE bool meet(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose, size_t slot,
+                    encounter *e) {
     probe(op->rule, law, pose, sk_load_part(run->vector[SK_X], slot, slot < op->packed), (sk_wide){0}, e);
     if (!sk_any(e->touching)) return false;
     find_motion(op->rule, pose, e);
@@ -64,7 +65,8 @@ void SK_KERNEL(contact_force)(sk_run *run, const sk_op *op, size_t begin, size_t
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         if (!meet(run, op, &law, &pose, slot, &e)) continue;
-        sk_wide4 f = sk_load_part(run->vector[op->dst], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
+        sk_wide4 f = sk_load_part(run->vector[op->dst], slot, packed),
+                 v = sk_load_part(run->vector[SK_V], slot, packed);
         sk_store_part(run->vector[op->dst], slot, packed, vec4_of(force_after(law, e, xyz(v), xyz(f)), f.w));
     }
 }
@@ -106,12 +108,15 @@ void SK_KERNEL(contact_push)(sk_run *run, const sk_op *op, size_t begin, size_t 
 
 /* Puts down by which plane some are held: its normal, a point of it with the friction in w (T0), and how far the surface goes there in a substep
  * (T1), which takes the plane along. */
-SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contact_law *law, const encounter *e, sk_mask held, sk_wide3 at, sk_wide3 goes) {
+SK_INLINE void put_plane(sk_run *run, const sk_op *op, size_t slot, const contact_law *law, const encounter *e,
+                         sk_mask held, sk_wide3 at, sk_wide3 goes) {
     const bool packed = slot < op->packed;
-    const sk_wide4 normal = sk_load_part(run->vector[SK_SUPPORT], slot, packed), level = sk_load_part(run->vector[SK_T0], slot, packed);
+    const sk_wide4 normal = sk_load_part(run->vector[SK_SUPPORT], slot, packed),
+                   level = sk_load_part(run->vector[SK_T0], slot, packed);
     const sk_wide4 old = sk_load_part(run->vector[SK_T1], slot, packed);
     sk_store_part(run->vector[SK_SUPPORT], slot, packed, vec4_of(pick3(held, e->normal, xyz(normal)), normal.w));
-    sk_store_part(run->vector[SK_T0], slot, packed, vec4_of(pick3(held, at, xyz(level)), sk_select(held, sk_splat(law->friction), level.w)));
+    sk_store_part(run->vector[SK_T0], slot, packed,
+                  vec4_of(pick3(held, at, xyz(level)), sk_select(held, sk_splat(law->friction), level.w)));
     sk_store_part(run->vector[SK_T1], slot, packed, vec4_of(pick3(held, goes, xyz(old)), old.w));
     __atomic_store_n(run->supported, true, __ATOMIC_RELAXED);
 }
@@ -156,7 +161,9 @@ SK_INLINE sk_wide4 start_of(const sk_run *run, const sk_op *op, const sk_pose *p
     const sk_wide3 start = xyz(sk_load_part(run->vector[o->vector], slot, slot < op->packed));
     if (!o->moves) return vec4_of(start, x.w);
     const sk_wide3 arm = minus(start, vec3_of(pose->position.x, pose->position.y, pose->position.z));
-    return vec4_of(plus(start, motion_of(vec3_of(o->shift.x, o->shift.y, o->shift.z), vec3_of(o->turn.x, o->turn.y, o->turn.z), arm)), x.w);
+    return vec4_of(plus(start, motion_of(vec3_of(o->shift.x, o->shift.y, o->shift.z),
+                                         vec3_of(o->turn.x, o->turn.y, o->turn.z), arm)),
+                   x.w);
 }
 
 /* Who touched when the substep began is held by what he touched: pulled in beside a corner, he is nearer to another face. Else by what he has
@@ -178,15 +185,20 @@ void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, si
         probe(op->rule, &law, &pose, start_of(run, op, &pose, &o, slot), (sk_wide){0}, &first);
         sk_mask rested = in & first.touching & ~began_deep(law, first, first.distance);
         if (law.bounces) {
-            const sk_wide3 v = xyz(sk_load_part(run->vector[SK_V], slot, slot < op->packed)), f = xyz(sk_load_part(run->vector[SK_F], slot, slot < op->packed));
+            const sk_wide3 v = xyz(sk_load_part(run->vector[SK_V], slot, slot < op->packed)),
+                           f = xyz(sk_load_part(run->vector[SK_F], slot, slot < op->packed));
             find_motion(op->rule, &pose, &first);
             rested &= is_resting(&law, &first, v, f);
             came &= rested;
         }
-        const sk_wide3 behind = times(law.thickness - e.distance, e.normal), under = times(law.thickness - first.distance, first.normal);
+        const sk_wide3 behind = times(law.thickness - e.distance, e.normal),
+                       under = times(law.thickness - first.distance, first.normal);
         // T0 is where the plane was before the surface went on
-        if (sk_any(came & ~rested)) put_plane(run, op, slot, &law, &e, came & ~rested, plus(plus(start, way), behind), minus(minus(xyz(e.x), start), way));
-        if (sk_any(rested)) put_plane(run, op, slot, &law, &first, rested, plus(start, under), minus(xyz(first.x), start));
+        if (sk_any(came & ~rested))
+            put_plane(run, op, slot, &law, &e, came & ~rested, plus(plus(start, way), behind),
+                      minus(minus(xyz(e.x), start), way));
+        if (sk_any(rested))
+            put_plane(run, op, slot, &law, &first, rested, plus(start, under), minus(xyz(first.x), start));
     }
 }
 
@@ -197,7 +209,8 @@ void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t 
         const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
         const sk_mask held = sk_positive(dot(normal, normal));
         if (!sk_any(held)) continue;
-        const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed), level = sk_load_part(run->vector[op->source[1]], slot, packed);
+        const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed),
+                       level = sk_load_part(run->vector[op->source[1]], slot, packed);
         const sk_wide3 goes = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), from = minus(xyz(x), goes);
         const sk_wide push = dot(normal, minus(xyz(level), from));
         const sk_mask in = sk_positive(push) & held;
@@ -219,7 +232,8 @@ void SK_KERNEL(probe_sixteen)(const sk_collider *collider, const sk_pose *pose, 
         sk_contact c;
         memcpy(&at.x, p[0] + l, sizeof at.x), memcpy(&at.y, p[1] + l, sizeof at.y);
         memcpy(&at.z, p[2] + l, sizeof at.z);
-        if (type->near[SK_THIS_ISA] && reach < SK_REAL_MAX) type->near[SK_THIS_ISA](collider->params, pose, &at, &most, &c);
+        if (type->near[SK_THIS_ISA] && reach < SK_REAL_MAX)
+            type->near[SK_THIS_ISA](collider->params, pose, &at, &most, &c);
         else type->probe[SK_THIS_ISA](collider->params, pose, &at, &c);
         memcpy(contacts->normal[0] + l, &c.normal.x, sizeof c.normal.x);
         memcpy(contacts->normal[1] + l, &c.normal.y, sizeof c.normal.y);
@@ -244,7 +258,8 @@ const sk_kernels sk_contact_hold = {SK_EACH_ISA(contact_hold)};
 
 void sk_contact_let_go(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     if (op->coefficient[0] > 0 && run->iteration) return;
-    memset(run->vector[op->dst] + begin, 0, (end - begin) * sizeof *run->vector[op->dst]); // packed or not, it is as long
+    memset(run->vector[op->dst] + begin, 0,
+           (end - begin) * sizeof *run->vector[op->dst]); // packed or not, it is as long
 }
 
 const skein_field sk_collider_fields[] = {

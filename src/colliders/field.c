@@ -39,7 +39,8 @@ SK_INLINE sk_wide field_within(sk_wide at, int nodes) {
 }
 
 /* Sum and lean of one point: `first` is the corner before it, `part` how far it is on from there, in cells. */
-SK_INLINE void field_mix(const field_params *f, const int first[3], const real part[3], field_quad *sum, field_quad *lean) {
+SK_INLINE void field_mix(const field_params *f, const int first[3], const real part[3], field_quad *sum,
+                         field_quad *lean) {
     const size_t row = (size_t)f->nodes[0], layer = row * (size_t)f->nodes[1];
     const sk_vec4 *base = f->node + (size_t)first[2] * layer + (size_t)first[1] * row + (size_t)first[0];
     *sum = *lean = (field_quad){0};
@@ -55,7 +56,8 @@ SK_INLINE void field_mix(const field_params *f, const int first[3], const real p
 
 void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {
     const field_params *f = data;
-    const real *r = pose->rotation, scale = (real)f->mesh.scale, per = (real)(1 / f->mesh.scale), per_side = 1 / f->side;
+    const real *r = pose->rotation, scale = (real)f->mesh.scale, per = (real)(1 / f->mesh.scale),
+               per_side = 1 / f->side;
     sk_wide3 d = {p->x - pose->position.x, p->y - pose->position.y, p->z - pose->position.z};
     sk_wide3 at = {(per * (r[0] * d.x + r[3] * d.y + r[6] * d.z) - f->low[0]) * per_side,
                    (per * (r[1] * d.x + r[4] * d.y + r[7] * d.z) - f->low[1]) * per_side,
@@ -91,7 +93,8 @@ void SK_KERNEL(probe)(const void *data, const sk_pose *pose, const sk_wide3 *p, 
         out &= sk_positive(length);
         sk_wide by = 1 / sk_select(out, length, one);
         distance = sk_select(out, length, distance);
-        n = (sk_wide3){sk_select(out, way.x * by, n.x), sk_select(out, way.y * by, n.y), sk_select(out, way.z * by, n.z)};
+        n = (sk_wide3){sk_select(out, way.x * by, n.x), sk_select(out, way.y * by, n.y),
+                       sk_select(out, way.z * by, n.z)};
     }
     contact->distance = scale * distance;
     contact->normal = (sk_wide3){r[0] * n.x + r[1] * n.y + r[2] * n.z, r[3] * n.x + r[4] * n.y + r[5] * n.z,
@@ -123,12 +126,14 @@ static size_t node_count(const field_params *f) {
 static skein_status lay_out(field_params *f, skein_error *error) {
     const sk_tree_node *box = &f->mesh.made->node[0];
     double extent[3], longest = 0, count = 1;
-    for (int k = 0; k < 3; k++) extent[k] = (double)box->high[k] - (double)box->low[k], longest = fmax(longest, extent[k]);
+    for (int k = 0; k < 3; k++)
+        extent[k] = (double)box->high[k] - (double)box->low[k], longest = fmax(longest, extent[k]);
     double side = f->cell > 0 ? f->cell / f->mesh.scale : longest / CELLS, along[3];
     for (int k = 0; k < 3; k++) along[k] = ceil(extent[k] / side) + 2 * BEYOND + 1, count *= along[k];
     if (!(count <= MOST_NODES))
-        return sk_fail(error, SKEIN_ERROR_LIMIT, "cell", "cells of %g m are %.3g distances for a mesh of %g m: at most %d", f->cell,
-                       count, longest * f->mesh.scale, MOST_NODES);
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "cell",
+                       "cells of %g m are %.3g distances for a mesh of %g m: at most %d", f->cell, count,
+                       longest * f->mesh.scale, MOST_NODES);
     f->side = (real)side;
     for (int k = 0; k < 3; k++) {
         f->nodes[k] = (int)along[k];
@@ -160,7 +165,8 @@ static bool sample(field_params *f) {
             }
             sk_solid_mesh.near[0](&own, &still, &p, &reach, &contact);
             for (size_t l = 0; l < SK_PART && i + l < row; l++) {
-                f->node[first + i + l] = (sk_vec4){contact.normal.x[l], contact.normal.y[l], contact.normal.z[l], contact.distance[l]};
+                f->node[first + i + l] =
+                    (sk_vec4){contact.normal.x[l], contact.normal.y[l], contact.normal.z[l], contact.distance[l]};
                 any_inside |= contact.distance[l] < 0;
             }
         }
@@ -197,22 +203,26 @@ static void unmake(void *data, sk_allocator *allocator) {
     sk_mesh_unmake(data, allocator);
 }
 
-static skein_status take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults, skein_error *error) {
+static skein_status take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults,
+                         skein_error *error) {
     field_params *f = data;
     skein_status status = sk_mesh_take(data, mesh, allocator, faults, error);
     if (!status) status = lay_out(f, error);
     if (status) return status;
     f->mesh.made->sheet = f->mesh.made->openness > 0.3; // its cells know no sheets: a crate without its lid is solid
-    if (!(f->node = sk_allocate(allocator, node_count(f) * sizeof *f->node))) return sk_fail_memory(error, "the distances");
+    if (!(f->node = sk_allocate(allocator, node_count(f) * sizeof *f->node)))
+        return sk_fail_memory(error, "the distances");
     if (!sample(f))
-        return sk_fail(error, SKEIN_ERROR_MESH, "mesh",
-                       "no corner of its cells of %g m is inside the mesh: take smaller cells, or type mesh, which takes sheets, too",
-                       (double)f->side * f->mesh.scale);
+        return sk_fail(
+            error, SKEIN_ERROR_MESH, "mesh",
+            "no corner of its cells of %g m is inside the mesh: take smaller cells, or type mesh, which takes sheets, too",
+            (double)f->side * f->mesh.scale);
     size_t thin = count_thin(f), at = strlen(faults->text);
     if (thin)
-        snprintf(faults->text + at, sizeof faults->text - at,
-                 "%sthe field may miss what is thinner than a cell, %.2g m: so little is behind %zu of the mesh's %zu triangles",
-                 at ? "; " : "", (double)f->side * f->mesh.scale, thin, f->mesh.made->triangle_count);
+        snprintf(
+            faults->text + at, sizeof faults->text - at,
+            "%sthe field may miss what is thinner than a cell, %.2g m: so little is behind %zu of the mesh's %zu triangles",
+            at ? "; " : "", (double)f->side * f->mesh.scale, thin, f->mesh.made->triangle_count);
     return SKEIN_OK;
 }
 
@@ -222,8 +232,10 @@ static bool is_shaped_by(const char *field) {
 
 static const sk_making making = {.make = sk_mesh_make, .unmake = unmake};
 const sk_collider_type sk_sampled_field = {
-    .kind = {"field", "what a mesh encloses, by distances sampled from it once: cheap to ask, and round at edges by a part of a cell",
-             SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields, sizeof(field_params)},
+    .kind =
+        {"field",
+         "what a mesh encloses, by distances sampled from it once: cheap to ask, and round at edges by a part of a cell",
+         SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields, sizeof(field_params)},
     .place = sk_mesh_place,
     .turn = sk_mesh_turn,
     .probe = SK_EACH_ISA(probe),

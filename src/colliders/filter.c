@@ -57,8 +57,8 @@ SK_INLINE sk_mask bounces(const contact_law *law, const encounter *e, sk_wide sp
     return law->bounces ? fast : fast & ~fast;
 }
 
-SK_INLINE void hold(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 x, sk_wide4 force,
-                    filtering *f) {
+SK_INLINE void hold(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 x,
+                    sk_wide4 force, filtering *f) {
     const real h = law->h;
     encounter e;
     // as far as its velocity, and its force, lead within the substep; and `touches` looks a hair further
@@ -115,8 +115,8 @@ void SK_KERNEL(contact_filter)(sk_run *run, const sk_op *op, size_t begin, size_
  * bounce), and of what lay on the surface only what presses. The rest is inside because its tangent leads there, in
  * a hollow, and the solve may take it off: holding that would glue it on, with more weight and friction for the rest.
  */
-SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *start, size_t slot,
-                               sk_wide4 v, const encounter *e, sk_wide *level) {
+SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *start,
+                               size_t slot, sk_wide4 v, const encounter *e, sk_wide *level) {
     const sk_collider *collider = op->rule;
     bool packed = slot < op->packed;
     sk_wide4 v0 = sk_load_part(run->vector[SK_V0], slot, packed);
@@ -146,8 +146,8 @@ SK_INLINE sk_mask comes_inside(const sk_run *run, const sk_op *op, const contact
 /* Friction of who slides is a force, from what pressed and pulled when the substep began. A stiff spring does so for a part
  * of it only: where the solve finds that friction drives what it is to brake, and faster than that came, as the surface sees
  * it (or a hundredth of the thickness in the substep), it is so much less. Returns whether that is so anywhere. */
-SK_INLINE bool ease_friction(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 v, sk_wide4 v0,
-                             encounter *e, sk_wide4 *rub) {
+SK_INLINE bool ease_friction(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 v,
+                             sk_wide4 v0, encounter *e, sk_wide4 *rub) {
     sk_wide3 force = xyz(*rub);
     sk_wide square = sk_dot_wide(force, force);
     sk_mask rubs = sk_positive(square) & sk_more(sk_splat(2 * law->thickness), e->distance);

@@ -126,7 +126,6 @@ const sk_collider_type sk_formula_surface = {
     .passing = SK_ANY_SHAPE,
     .guarded = is_guarded,
     .making = &making,
-    .shader =
-        {.file = "colliders/formula", .size = SK_POINTWISE_BLOCK, .pack = pack, .write = write, .changes = changes},
+    .shader = {.file = "colliders/formula", .size = SK_POINTWISE_BLOCK, .pack = pack, .write = write, .changes = changes},
 };
 #endif

@@ -3,10 +3,10 @@
  * Points are taken into the mesh's own frame, and their nearest triangles found there (trimesh_near.h); distance and
  * normal are then worked out from the one that was found, in double. Contact asks only within its reach: what is
  * farther off, but for what is deep inside, costs a look at a few boxes. */
+#include "colliders/mesh.h"
 #include "base/kernels.h"
 #include "base/rotation.h"
 #include "base/status.h"
-#include "colliders/mesh.h"
 
 typedef sk_mesh_params mesh_params;
 
@@ -31,7 +31,8 @@ static sk_wide look_further(const sk_trimesh *m, sk_wide3 p, sk_mask looked, sk_
 }
 
 SK_INLINE sk_wide3 turned(const real r[9], sk_wide3 a) {
-    return (sk_wide3){r[0] * a.x + r[1] * a.y + r[2] * a.z, r[3] * a.x + r[4] * a.y + r[5] * a.z, r[6] * a.x + r[7] * a.y + r[8] * a.z};
+    return (sk_wide3){r[0] * a.x + r[1] * a.y + r[2] * a.z, r[3] * a.x + r[4] * a.y + r[5] * a.z,
+                      r[6] * a.x + r[7] * a.y + r[8] * a.z};
 }
 
 SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
@@ -67,7 +68,8 @@ SK_INLINE void ask(const void *data, const sk_pose *pose, const sk_wide3 *p, con
         sk_trimesh_look(m, (uint32_t)found[l], at, &spot);
         n.x[l] = (real)spot.normal[0], n.y[l] = (real)spot.normal[1], n.z[l] = (real)spot.normal[2];
         contact->distance[l] = (real)spot.distance * scale, contact->speed[l] = (real)spot.speed * scale;
-        slide.x[l] = (real)spot.slide[0] * scale, slide.y[l] = (real)spot.slide[1] * scale, slide.z[l] = (real)spot.slide[2] * scale;
+        slide.x[l] = (real)spot.slide[0] * scale, slide.y[l] = (real)spot.slide[1] * scale,
+        slide.z[l] = (real)spot.slide[2] * scale;
     }
     contact->slide = turned(r, slide);
     contact->normal = turned(r, n);
@@ -77,7 +79,8 @@ void SK_KERNEL(probe)(const void *params, const sk_pose *pose, const sk_wide3 *p
     ask(params, pose, p, NULL, contact);
 }
 
-void SK_KERNEL(near)(const void *params, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach, sk_contact *contact) {
+void SK_KERNEL(near)(const void *params, const sk_pose *pose, const sk_wide3 *p, const sk_wide *reach,
+                     sk_contact *contact) {
     ask(params, pose, p, reach, contact);
 }
 
@@ -97,7 +100,8 @@ void sk_mesh_turn(const void *data, double rotation[9]) {
 skein_status sk_mesh_make(void *data, const skein_kind *kind, sk_allocator *allocator, skein_error *error) {
     (void)kind, (void)allocator;
     if (!((const mesh_params *)data)->made) return SKEIN_OK;
-    return sk_fail(error, SKEIN_ERROR_VALUE, "mesh", "the mesh shapes what is already built: set it when the collider is added");
+    return sk_fail(error, SKEIN_ERROR_VALUE, "mesh",
+                   "the mesh shapes what is already built: set it when the collider is added");
 }
 
 void sk_mesh_unmake(void *data, sk_allocator *allocator) {
@@ -105,7 +109,8 @@ void sk_mesh_unmake(void *data, sk_allocator *allocator) {
     sk_trimesh_destroy(((mesh_params *)data)->made);
 }
 
-skein_status sk_mesh_take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults, skein_error *error) {
+skein_status sk_mesh_take(void *data, const skein_mesh *mesh, sk_allocator *allocator, sk_faults_text *faults,
+                          skein_error *error) {
     mesh_params *params = data;
     skein_status status = sk_trimesh_create(mesh, allocator, &params->made, error);
     if (!status) sk_trimesh_faults(params->made, params->mesh, faults->text, sizeof faults->text);
@@ -150,8 +155,10 @@ static void ball(const void *data, const sk_pose *pose, sk_vec3 *middle, real *r
     const mesh_params *params = data;
     const sk_tree_node *box = &params->made->node[0];
     const real *r = pose->rotation, half = (real)(0.5 * params->scale);
-    sk_vec3 m = {half * (box->low[0] + box->high[0]), half * (box->low[1] + box->high[1]), half * (box->low[2] + box->high[2])};
-    sk_vec3 reach = {half * (box->high[0] - box->low[0]), half * (box->high[1] - box->low[1]), half * (box->high[2] - box->low[2])};
+    sk_vec3 m = {half * (box->low[0] + box->high[0]), half * (box->low[1] + box->high[1]),
+                 half * (box->low[2] + box->high[2])};
+    sk_vec3 reach = {half * (box->high[0] - box->low[0]), half * (box->high[1] - box->low[1]),
+                     half * (box->high[2] - box->low[2])};
     *middle = sk_add(pose->position, sk_v3(r[0] * m.x + r[1] * m.y + r[2] * m.z, r[3] * m.x + r[4] * m.y + r[5] * m.z,
                                            r[6] * m.x + r[7] * m.y + r[8] * m.z));
     *radius = (real)1.0001 * sk_length(reach);
@@ -175,8 +182,8 @@ static double fastest(const void *data) {
 
 static const sk_making making = {.make = sk_mesh_make, .unmake = sk_mesh_unmake};
 const sk_collider_type sk_solid_mesh = {
-    .kind = {"mesh", "what a mesh encloses, or an open one from both sides; moved as a whole, or by a program", SKEIN_COLLIDER,
-             fields, sizeof fields / sizeof *fields, sizeof(mesh_params)},
+    .kind = {"mesh", "what a mesh encloses, or an open one from both sides; moved as a whole, or by a program",
+             SKEIN_COLLIDER, fields, sizeof fields / sizeof *fields, sizeof(mesh_params)},
     .place = sk_mesh_place,
     .turn = sk_mesh_turn,
     .probe = SK_EACH_ISA(probe),

@@ -170,7 +170,8 @@ void sk_collider_begin(sk_collider *collider, double time, double dt) {
     }
     for (int i = 0; i < 9; i++) rotation[i] = (double)pose.rotation[i];
     travel->angle = 0;
-    if (collider->type->turn || collider->led) travel->angle = sk_rotation_from_to(travel->rotation, rotation, travel->axis);
+    if (collider->type->turn || collider->led)
+        travel->angle = sk_rotation_from_to(travel->rotation, rotation, travel->axis);
     else if (collider->type->axis)
         travel->angle = sk_rotation_of_directions(travel->direction, direction, travel->axis);
     travel->moving |= travel->angle > 0;
@@ -178,7 +179,8 @@ void sk_collider_begin(sk_collider *collider, double time, double dt) {
     travel->dt = dt;
 }
 
-void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried, const sk_frame *end) {
+void sk_collider_lead(sk_collider *collider, double time, const sk_frame *now, const sk_frame *carried,
+                      const sk_frame *end) {
     sk_travel *travel = &collider->travel;
     collider->led = true;
     collider->frame = *now;

@@ -124,7 +124,8 @@ SK_INLINE vec3 velocity_moved(contact_law law, encounter e, vec4 v, vec3 way, ve
     num approach = dot(from_surface(came, e), e.normal), change = -dot(from_surface(now, e), e.normal);
     if (law.bounces)
         change = change + pick(-approach > resting_speed(e, force, law.h), restitution_of(law, v.w) * -approach, 0);
-    return pick3(both(e.touching, either(approach < 0, both(e.leaving, change > 0))), plus(now, times(change, e.normal)), now);
+    return pick3(both(e.touching, either(approach < 0, both(e.leaving, change > 0))),
+                 plus(now, times(change, e.normal)), now);
 }
 
 /* Whether it was inside at the start of the substep, when it was `behind` off the tangent plane of what is nearest now. */
@@ -164,15 +165,16 @@ SK_INLINE void add_where(sk_mask mask, sk_wide4 *a, sk_wide3 b) {
 }
 
 /* Probes a part of a block at x: who touches. What is farther off than that, and by more than `ahead`, need not be known. */
-SK_INLINE void probe(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 x, sk_wide ahead,
-                     encounter *e) {
+SK_INLINE void probe(const sk_collider *collider, const contact_law *law, const sk_pose *pose, sk_wide4 x,
+                     sk_wide ahead, encounter *e) {
     sk_wide3 p = xyz(x);
     sk_contact contact;
     e->x = x;
     e->reach = reach_of(*law, p);
     sk_probe_near *near = collider->type->near[SK_THIS_ISA];
     if (near) {
-        sk_wide far = sk_select(sk_positive(x.w), (real)1.01 * e->reach + ahead, sk_splat(-1)); // who is held meets nothing
+        sk_wide far =
+            sk_select(sk_positive(x.w), (real)1.01 * e->reach + ahead, sk_splat(-1)); // who is held meets nothing
         near(collider->params, pose, &p, &far, &contact);
     } else {
         collider->type->probe[SK_THIS_ISA](collider->params, pose, &p, &contact);

@@ -52,7 +52,8 @@ static void find_weights(const corners c, const double p[3], double weight[2]) {
     else if (d6 >= 0 && d5 <= d6) weight[1] = 1;
     else if (vc <= 0 && d1 >= 0 && d3 <= 0) weight[0] = d1 / (d1 - d3);
     else if (vb <= 0 && d2 >= 0 && d6 <= 0) weight[1] = d2 / (d2 - d6);
-    else if (va <= 0 && d4 >= d3 && d5 >= d6) weight[1] = (d4 - d3) / ((d4 - d3) + (d5 - d6)), weight[0] = 1 - weight[1];
+    else if (va <= 0 && d4 >= d3 && d5 >= d6)
+        weight[1] = (d4 - d3) / ((d4 - d3) + (d5 - d6)), weight[0] = 1 - weight[1];
     else weight[0] = vb / (va + vb + vc), weight[1] = vc / (va + vb + vc);
 }
 

@@ -31,9 +31,9 @@ SK_INLINE vec3 turned_back(sk_pose where, vec3 v) {
                   r[2] * v.x + r[5] * v.y + r[8] * v.z};
 }
 
-#define SK_PROBE(kind)                                                                                               \
-    void SK_KERNEL(probe)(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) {         \
-        *contact = kind##_probe(*(const kind##_params *)params, *pose, *p);                                          \
+#define SK_PROBE(kind)                                                                                       \
+    void SK_KERNEL(probe)(const void *params, const sk_pose *pose, const sk_wide3 *p, sk_contact *contact) { \
+        *contact = kind##_probe(*(const kind##_params *)params, *pose, *p);                                  \
     }
 
 #endif

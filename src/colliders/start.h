@@ -20,10 +20,10 @@ typedef struct origin {
     bool known, moves, deforms, settles; /* settles: what stops gives the velocity its move */
     sk_vector vector;
     sk_passing passing;
-    real long_way; /* the square of five thicknesses */
-    real least;    /* s and the reach together are at least this where nothing is to be asked */
+    real long_way;       /* the square of five thicknesses */
+    real least;          /* s and the reach together are at least this where nothing is to be asked */
     sk_vec3 shift, turn; /* of the collider in the substep: m, rad */
-    real bend;     /* what turning adds to that at an arm of 1 m, at most */
+    real bend;           /* what turning adds to that at an arm of 1 m, at most */
 } origin;
 
 /* Of an op that answers at the end of a substep. */
@@ -76,8 +76,8 @@ SK_INLINE bool only_enters(const sk_swept *sweep, const double a[3], const doubl
 }
 
 /* Stops those whose way crosses the surface; `behind`: s < 0. Whether any did. */
-SK_INLINE bool stop_at_surface(sk_run *run, const sk_op *op, const origin *o, size_t slot, sk_wide3 from, sk_mask crossing,
-                               sk_mask behind) {
+SK_INLINE bool stop_at_surface(sk_run *run, const sk_op *op, const origin *o, size_t slot, sk_wide3 from,
+                               sk_mask crossing, sk_mask behind) {
     bool packed = slot < op->packed, any = false;
     sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), v = sk_load_part(run->vector[SK_V], slot, packed);
     real per_step = o->settles ? (real)(1 / op->dt) : 0;
@@ -112,8 +112,8 @@ SK_INLINE sk_wide3 find_start(const sk_run *run, const sk_op *op, const origin *
 }
 
 /* Stops those that come through, and finds how far those may be pushed that were inside when the substep began. Whether any stopped. */
-static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, const contact_law *law, const sk_pose *pose,
-                                                origin o, size_t slot, encounter *e) {
+static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, const contact_law *law,
+                                                const sk_pose *pose, origin o, size_t slot, encounter *e) {
     const sk_collider *collider = op->rule;
     sk_wide3 from = find_start(run, op, &o, slot), seen = from;
     if (o.deforms) seen = plus(plus(from, times(law->h * e->speed, e->normal)), times(law->h, e->surface));

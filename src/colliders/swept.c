@@ -20,7 +20,8 @@ SK_KERNELS(sk_op_kernel, sweep);
 #ifdef SK_ISA
 
 /* Starts as the surface sees them where it is now, by what of it is nearest to x within reach. */
-SK_INLINE sk_wide3 led_along(const sk_collider *collider, const sk_pose *pose, sk_wide3 from, sk_wide4 x, real h, sk_wide reach) {
+SK_INLINE sk_wide3 led_along(const sk_collider *collider, const sk_pose *pose, sk_wide3 from, sk_wide4 x, real h,
+                             sk_wide reach) {
     const sk_wide3 p = {x.x, x.y, x.z};
     sk_contact contact;
     collider->type->near[SK_THIS_ISA](collider->params, pose, &p, &reach, &contact);
@@ -33,10 +34,12 @@ void SK_KERNEL(sweep)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     const sk_collider *collider = op->rule;
     sk_swept sweep = sk_swept_begin(collider, run->time - op->dt, run->time - op->before_end, op->coefficient[0] > 0);
     real half = (real)(0.5 * collider->common->thickness), per_step = (real)(op->coefficient[0] / op->dt);
-    real h = (real)(op->dt - op->before_end), led = collider->type->fastest ? h * (real)collider->type->fastest(collider->params) : 0;
+    real h = (real)(op->dt - op->before_end),
+         led = collider->type->fastest ? h * (real)collider->type->fastest(collider->params) : 0;
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
-        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed), x0 = sk_load_part(run->vector[op->source[1]], slot, packed);
+        sk_wide4 x = sk_load_part(run->vector[SK_X], slot, packed),
+                 x0 = sk_load_part(run->vector[op->source[1]], slot, packed);
         const real *r = sweep.turn;
         sk_wide3 from = {x0.x, x0.y, x0.z};
         if (sweep.moves)
@@ -46,7 +49,8 @@ void SK_KERNEL(sweep)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
         sk_wide3 way = {x.x - from.x, x.y - from.y, x.z - from.z};
         sk_wide3 off = {x.x - sweep.middle.x, x.y - sweep.middle.y, x.z - sweep.middle.z};
         sk_wide length = sk_wide_sqrt(sk_dot_wide(way, way)) + led, near = length + sweep.radius;
-        sk_mask looked = sk_positive(x.w) & sk_more(length, sk_splat(half)) & sk_at_most(sk_dot_wide(off, off), near * near);
+        sk_mask looked =
+            sk_positive(x.w) & sk_more(length, sk_splat(half)) & sk_at_most(sk_dot_wide(off, off), near * near);
         if (!sk_any(looked)) continue;
         if (led > 0) from = led_along(collider, &sweep.pose, from, x, h, sk_select(looked, length, sk_splat(-1)));
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);

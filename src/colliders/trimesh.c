@@ -16,8 +16,9 @@ static skein_status check_mesh(const skein_mesh *mesh, skein_error *error) {
         return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "a collider needs a mesh with vertices and faces%s",
                        mesh ? "" : ": name its file, or pass it to skein_collider_add_mesh()");
     if (mesh->vertex_count > UINT32_MAX / 4 || mesh->face_vertex_count > UINT32_MAX / 4)
-        return sk_fail(error, SKEIN_ERROR_LIMIT, "mesh", "%zu vertices and %zu face corners are too many for 32-bit indices",
-                       mesh->vertex_count, mesh->face_vertex_count);
+        return sk_fail(error, SKEIN_ERROR_LIMIT, "mesh",
+                       "%zu vertices and %zu face corners are too many for 32-bit indices", mesh->vertex_count,
+                       mesh->face_vertex_count);
     for (size_t i = 0; i < 3 * mesh->vertex_count; i++)
         if (!(fabs(mesh->positions[i]) <= 1e12))
             return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "vertex %zu: coordinates must be finite, under 1e12", i / 3);
@@ -25,8 +26,9 @@ static skein_status check_mesh(const skein_mesh *mesh, skein_error *error) {
     for (size_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = mesh->face_sizes[f];
         if (size < 3 || size > mesh->face_vertex_count - corner)
-            return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "face %zu has %u corners, and %zu are left: expected 3 or more", f,
-                           size, mesh->face_vertex_count - corner);
+            return sk_fail(error, SKEIN_ERROR_MESH, "mesh",
+                           "face %zu has %u corners, and %zu are left: expected 3 or more", f, size,
+                           mesh->face_vertex_count - corner);
         for (uint32_t k = 0; k < size; k++, corner++)
             if (mesh->face_vertices[corner] >= mesh->vertex_count)
                 return sk_fail(error, SKEIN_ERROR_MESH, "mesh", "face %zu names vertex %u, but there are only %zu", f,
@@ -213,7 +215,8 @@ static double openness_of(const sk_trimesh *m) {
         double p[3][3], ab[3], ac[3];
         for (int k = 0; k < 3; k++) to_double(m->place[m->corner[t][k]], p[k]);
         for (int k = 0; k < 3; k++) ab[k] = p[1][k] - p[0][k], ac[k] = p[2][k] - p[0][k];
-        const double area[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2], ab[0] * ac[1] - ab[1] * ac[0]};
+        const double area[3] = {ab[1] * ac[2] - ab[2] * ac[1], ab[2] * ac[0] - ab[0] * ac[2],
+                                ab[0] * ac[1] - ab[1] * ac[0]};
         for (int k = 0; k < 3; k++) sum[k] += area[k];
         all += sqrt(dot3(area, area));
     }
@@ -232,7 +235,8 @@ static bool make_room(sk_trimesh *m, size_t triangles) {
     m->beside = sk_allocate(a, triangles * sizeof *m->beside);
     m->facet = sk_allocate(a, triangles * sizeof *m->facet);
     m->normal = sk_allocate(a, triangles * sizeof *m->normal);
-    return m->vertex_of && m->place && m->velocity && m->vertex_normal && m->corner && m->beside && m->facet && m->normal;
+    return m->vertex_of && m->place && m->velocity && m->vertex_normal && m->corner && m->beside && m->facet &&
+           m->normal;
 }
 
 static skein_status fill(sk_trimesh *m, const skein_mesh *mesh, skein_error *error) {
@@ -268,9 +272,9 @@ skein_status sk_trimesh_create(const skein_mesh *mesh, sk_allocator *allocator, 
 
 void sk_trimesh_destroy(sk_trimesh *m) {
     if (!m) return;
-    void *const parts[] = {m->led, m->from, m->to, m->vertex_of, m->place, m->velocity, m->made, m->vertex_normal, m->corner, m->beside,
-                           m->facet,     m->normal, m->node,    m->dipole,
-                           m->cell};
+    void *const parts[] = {m->led,  m->from,          m->to,     m->vertex_of, m->place, m->velocity,
+                           m->made, m->vertex_normal, m->corner, m->beside,    m->facet, m->normal,
+                           m->node, m->dipole,        m->cell};
     for (size_t i = 0; i < sizeof parts / sizeof *parts; i++) sk_release(m->allocator, parts[i]);
     sk_release(m->allocator, m);
 }
@@ -288,8 +292,8 @@ void sk_trimesh_faults(const sk_trimesh *m, const char *file, char *text, size_t
     };
     for (size_t i = 0; i < sizeof faults / sizeof *faults; i++)
         if (faults[i].count && at < size)
-            at += (size_t)snprintf(text + at, size - at, "%s%s%s%s%zu %s", at ? ", " : "the mesh", !at && file[0] ? " " : "",
-                                   at ? "" : file, at ? "" : " has ", faults[i].count,
+            at += (size_t)snprintf(text + at, size - at, "%s%s%s%s%zu %s", at ? ", " : "the mesh",
+                                   !at && file[0] ? " " : "", at ? "" : file, at ? "" : " has ", faults[i].count,
                                    faults[i].count == 1 ? faults[i].one : faults[i].many);
 }
 
@@ -429,14 +433,16 @@ void sk_trimesh_look(const sk_trimesh *m, uint32_t triangle, const real p[3], sk
     double sign = inside ? -1 : 1, tiny = (sizeof(real) == 4 ? 1e-6 : 1e-14) * size;
     bool on = d <= tiny;
     if (on && !m->closed) sign = 1;
-    for (int k = 0; k < 3; k++) spot->normal[k] = on ? (!m->closed && !inside && side < 0 ? -n[k] : n[k]) : sign * away[k] / d;
+    for (int k = 0; k < 3; k++)
+        spot->normal[k] = on ? (!m->closed && !inside && side < 0 ? -n[k] : n[k]) : sign * away[k] / d;
     spot->distance = (inside ? -1 : 1) * d;
     spot->speed = spot->slide[0] = spot->slide[1] = spot->slide[2] = 0;
     if (!m->moves) return;
     const uint32_t *corner = m->corner[triangle];
     double v[3][3];
     for (int k = 0; k < 3; k++) to_double(m->velocity[corner[k]], v[k]);
-    for (int k = 0; k < 3; k++) spot->slide[k] = (1 - weight[0] - weight[1]) * v[0][k] + weight[0] * v[1][k] + weight[1] * v[2][k];
+    for (int k = 0; k < 3; k++)
+        spot->slide[k] = (1 - weight[0] - weight[1]) * v[0][k] + weight[0] * v[1][k] + weight[1] * v[2][k];
     spot->speed = dot3(spot->normal, spot->slide);
     for (int k = 0; k < 3; k++) spot->slide[k] -= spot->speed * spot->normal[k];
 }

@@ -18,9 +18,9 @@
 /* Corner a, the sides from it, and what the nearest point asks of them; sixteen numbers. */
 typedef struct sk_facet {
     real a[3], ab[3], ac[3];
-    real bb, bc, cc;          /* ab.ab, ab.ac, ac.ac */
+    real bb, bc, cc;             /* ab.ab, ab.ac, ac.ac */
     real per_bb, per_cc, per_ee; /* one over a side's square, 0 where it has no length */
-    real per_area;            /* 1/(bb cc - bc^2); NaN where the triangle has no area: then no point is over it */
+    real per_area;               /* 1/(bb cc - bc^2); NaN where the triangle has no area: then no point is over it */
 } sk_facet;
 
 /* A node's first child is the next one; `first` is the other child, or a leaf's first triangle. */
@@ -40,27 +40,28 @@ typedef struct sk_trimesh {
     bool leads;
     sk_vec3 *from, *to; /* of welded vertices, in a step through which they go; NULL like `led` */
     double start, dt, now;
-    double fastest;     /* of their speeds in that step, in the mesh's own frame */
+    double fastest; /* of their speeds in that step, in the mesh's own frame */
     size_t given_count, vertex_count, triangle_count, node_count;
-    uint32_t *vertex_of;      /* of each vertex that was given: which it is, welded */
+    uint32_t *vertex_of;       /* of each vertex that was given: which it is, welded */
     sk_vec3 *place, *velocity; /* of welded vertices; m, m/s */
     sk_vec3 *made;             /* their places before a program led them anywhere; NULL while none has */
-    uint32_t (*corner)[3];    /* in the tree's order */
-    uint32_t (*beside)[3];    /* the triangle on the other side of edge k, from corner k on; SK_ALONE: none, or several */
+    uint32_t (*corner)[3];     /* in the tree's order */
+    uint32_t (*beside)[3]; /* the triangle on the other side of edge k, from corner k on; SK_ALONE: none, or several */
     sk_facet *facet;
-    sk_vec3 *normal;          /* of faces, of length 1 or 0 */
-    sk_vec3 *vertex_normal;   /* weighted by angles */
+    sk_vec3 *normal;        /* of faces, of length 1 or 0 */
+    sk_vec3 *vertex_normal; /* weighted by angles */
     sk_tree_node *node;
     sk_dipole *dipole; /* of nodes */
     /* Cells over the box of a closed mesh that keeps its shape: what no triangle comes near is inside or outside as a whole. */
     uint8_t *cell;
     int cells[3];
     real cell_low[3], per_cell[3], cell_span; /* the diagonal of one */
-    real slack;        /* squared m: rounding may make a triangle nearer by so much than its box */
+    real slack; /* squared m: rounding may make a triangle nearer by so much than its box */
     bool closed, turned, moves;
-    bool sheet;        /* so open that it has no inside */
-    double openness;   /* the areas of its faces as vectors, summed up, over the sum of its areas; 0 of what is closed */
-    size_t open_edges, torn_edges, thin; /* edges of one triangle; of more than two, or of two that disagree; faces left out */
+    bool sheet;      /* so open that it has no inside */
+    double openness; /* the areas of its faces as vectors, summed up, over the sum of its areas; 0 of what is closed */
+    size_t open_edges, torn_edges,
+        thin; /* edges of one triangle; of more than two, or of two that disagree; faces left out */
 } sk_trimesh;
 
 #define SK_ALONE UINT32_MAX

@@ -44,7 +44,8 @@ static void mark_near(sk_trimesh *m, size_t t, real slack) {
                 // off its plane by more than half a cell's diagonal it does not come near
                 real off = 0;
                 for (int k = 0; k < 3; k++)
-                    off += (&m->normal[t].x)[k] * (m->cell_low[k] + ((real)at[k] + (real)0.5) / m->per_cell[k] - m->facet[t].a[k]);
+                    off += (&m->normal[t].x)[k] *
+                           (m->cell_low[k] + ((real)at[k] + (real)0.5) / m->per_cell[k] - m->facet[t].a[k]);
                 if (fabs((double)off) <= 0.5 * (double)m->cell_span + (double)slack) m->cell[place_of(m, at)] = NEAR;
             }
 }

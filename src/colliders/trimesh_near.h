@@ -33,7 +33,8 @@ SK_INLINE sk_wide trimesh_facet(const sk_facet *f, sk_wide3 p) {
     sk_wide v = (f->cc * d1 - f->bc * d2) * f->per_area, w = (f->bb * d2 - f->bc * d1) * f->per_area;
     sk_wide none = {0};
     sk_mask over = (v >= none) & (w >= none) & sk_at_most(v + w, sk_splat(1));
-    sk_wide3 left = {ap.x - v * f->ab[0] - w * f->ac[0], ap.y - v * f->ab[1] - w * f->ac[1], ap.z - v * f->ab[2] - w * f->ac[2]};
+    sk_wide3 left = {ap.x - v * f->ab[0] - w * f->ac[0], ap.y - v * f->ab[1] - w * f->ac[1],
+                     ap.z - v * f->ab[2] - w * f->ac[2]};
     sk_wide square = sk_dot_wide(left, left);
     if (!sk_any(~over)) return square;
     const real bc[3] = {f->ac[0] - f->ab[0], f->ac[1] - f->ab[1], f->ac[2] - f->ab[2]};

@@ -14,8 +14,8 @@ enum { LEAF = 4, STACK = 64 };
 
 typedef struct planter {
     sk_trimesh *m;
-    uint32_t *order;      /* of triangles */
-    real (*middle)[3];    /* of triangles, times 3 */
+    uint32_t *order;   /* of triangles */
+    real (*middle)[3]; /* of triangles, times 3 */
 } planter;
 
 static bool before(const planter *p, uint32_t a, uint32_t b, int axis) {
@@ -70,7 +70,8 @@ static void plant(planter *p, size_t first, size_t end) {
 
 bool sk_trimesh_plant(sk_trimesh *m) {
     size_t count = m->triangle_count;
-    planter p = {m, sk_allocate(m->allocator, count * sizeof *p.order), sk_allocate(m->allocator, count * sizeof *p.middle)};
+    planter p = {m, sk_allocate(m->allocator, count * sizeof *p.order),
+                 sk_allocate(m->allocator, count * sizeof *p.middle)};
     m->node = sk_allocate(m->allocator, 2 * count * sizeof *m->node);
     uint32_t(*sorted)[3] = sk_allocate(m->allocator, count * sizeof *sorted);
     bool good = p.order && p.middle && m->node && sorted;
@@ -162,7 +163,8 @@ static double half_angle(const sk_trimesh *m, uint32_t t, const double p[3]) {
         v[i][0] = (double)c.x - p[0], v[i][1] = (double)c.y - p[1], v[i][2] = (double)c.z - p[2];
         l[i] = sqrt(dot3(v[i], v[i]));
     }
-    double triple = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) + v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
+    double triple = v[0][0] * (v[1][1] * v[2][2] - v[1][2] * v[2][1]) +
+                    v[0][1] * (v[1][2] * v[2][0] - v[1][0] * v[2][2]) +
                     v[0][2] * (v[1][0] * v[2][1] - v[1][1] * v[2][0]);
     double across = l[0] * l[1] * l[2] + dot3(v[0], v[1]) * l[2] + dot3(v[1], v[2]) * l[0] + dot3(v[2], v[0]) * l[1];
     return triple == 0 ? 0 : sk_atan2(triple, across);
@@ -217,7 +219,8 @@ static double cross_triangle(const sk_trimesh *m, uint32_t t, const double a[3],
     if (det == 0) return 2;
     double u = dot3(from, p) / det;
     if (!(u >= -edge && u <= 1 + edge)) return 2;
-    double q[3] = {from[1] * ab[2] - from[2] * ab[1], from[2] * ab[0] - from[0] * ab[2], from[0] * ab[1] - from[1] * ab[0]};
+    double q[3] = {from[1] * ab[2] - from[2] * ab[1], from[2] * ab[0] - from[0] * ab[2],
+                   from[0] * ab[1] - from[1] * ab[0]};
     double v = dot3(w, q) / det, part = dot3(ac, q) / det;
     return v >= -edge && u + v <= 1 + edge && part >= 0 && part <= 1 ? part : 2;
 }
@@ -232,7 +235,8 @@ double sk_trimesh_cross(const sk_trimesh *m, const double a[3], const double b[3
         if (!comes_through(node, a, w, first < 1 ? first : 1)) continue;
         for (uint32_t i = 0; i < node->count; i++) {
             double part = cross_triangle(m, node->first + i, a, w);
-            if (part < first || (part == first && part <= 1 && node->first + i < met)) first = part, met = node->first + i;
+            if (part < first || (part == first && part <= 1 && node->first + i < met))
+                first = part, met = node->first + i;
         }
         if (!node->count) stack[depth++] = node->first, stack[depth++] = n + 1;
     }

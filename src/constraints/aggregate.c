@@ -20,8 +20,8 @@ sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t c
     a->mean = sk_allocate(allocator, hubs * sizeof *a->mean);
     a->place = sk_allocate(allocator, hubs * sizeof *a->place);
     a->move = sk_allocate(allocator, hubs * sizeof *a->move);
-    const void *const arrays[] = {a->hub, a->hub_slot, a->particle, a->particle_slot, a->start, a->of, a->share,
-                                  a->part, a->own, a->pinned, a->mean, a->place, a->move};
+    const void *const arrays[] = {a->hub,  a->hub_slot, a->particle, a->particle_slot, a->start, a->of,  a->share,
+                                  a->part, a->own,      a->pinned,   a->mean,          a->place, a->move};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         if (arrays[i]) continue;
         sk_aggregate_release(a, allocator);
@@ -32,8 +32,8 @@ sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t c
 
 void sk_aggregate_release(sk_aggregate *a, sk_allocator *allocator) {
     if (!a) return;
-    void *arrays[] = {a->hub, a->hub_slot, a->particle, a->particle_slot, a->start, a->of, a->share,
-                      a->part, a->own, a->pinned, a->mean, a->place, a->move};
+    void *arrays[] = {a->hub,  a->hub_slot, a->particle, a->particle_slot, a->start, a->of,  a->share,
+                      a->part, a->own,      a->pinned,   a->mean,          a->place, a->move};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, a);
 }
@@ -79,7 +79,8 @@ static void carry(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t i = 0; i < a->count; i++) {
         sk_quad way = {0, 0, 0, 0};
         if (!(sk_load(x, op->packed, a->particle_slot[i]).w > 0)) continue;
-        for (size_t k = a->start[i]; k < a->start[i + 1]; k++) way += sk_quad_times(a->share[k], sk_quad_at(&a->move[a->of[k]]));
+        for (size_t k = a->start[i]; k < a->start[i + 1]; k++)
+            way += sk_quad_times(a->share[k], sk_quad_at(&a->move[a->of[k]]));
         sk_add_at(x, op->packed, a->particle_slot[i], (sk_vec3){way[0], way[1], way[2]});
     }
 }

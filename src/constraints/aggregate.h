@@ -25,12 +25,13 @@ typedef struct sk_aggregate {
     size_t hub_count, count, share_count;
     uint32_t *hub, *particle;           /* user's indices: the hubs, and those that are carried */
     uint32_t *hub_slot, *particle_slot; /* the same as slots */
-    uint32_t *start, *of;               /* of a carried one its shares, from start[i] to start[i + 1]: of which hubs, as a place */
-    real *share, *part;                 /* and how much of the mean of a hub it is; */
-    real *own;                          /* of hubs: how much of it they are themselves, */
-    bool *pinned;                       /* and whether they were built pinned: such a one stands for itself while it is */
-    sk_vec4 *mean, *place, *move;       /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
-    int times;     /* how often its distances are swept, forward and backward in turn */
+    uint32_t *start, *of; /* of a carried one its shares, from start[i] to start[i + 1]: of which hubs, as a place */
+    real *share, *part;   /* and how much of the mean of a hub it is; */
+    real *own;            /* of hubs: how much of it they are themselves, */
+    bool *pinned;         /* and whether they were built pinned: such a one stands for itself while it is */
+    sk_vec4 *mean, *place,
+        *move; /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
+    int times; /* how often its distances are swept, forward and backward in turn */
 } sk_aggregate;
 
 /* All lists with that room, the numbers 0; NULL when there is no memory. */

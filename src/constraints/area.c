@@ -10,8 +10,7 @@
 static const skein_field fields[] = {
     SK_REAL(sk_material, stiffness, "stiffness", "N/m3", 1e6, 0, SK_UNBOUNDED,
             "force over length and square metre of change; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "N s/m3", 0, 0, SK_FAR,
-            "the same against the area's change in time"),
+    SK_REAL(sk_material, damping, "damping", "N s/m3", 0, 0, SK_FAR, "the same against the area's change in time"),
 };
 
 const sk_constraint_type sk_area = {

@@ -16,11 +16,14 @@ SK_INLINE void spread(const sk_element *e, sk_wide3 v, sk_wide3 *g) {
     sk_wide3 w = {x[3].x - x[1].x, x[3].y - x[1].y, x[3].z - x[1].z};
     sk_wide3 n = {u.y * w.z - u.z * w.y, u.z * w.x - u.x * w.z, u.x * w.y - u.y * w.x};
     sk_wide square = sk_dot_wide(n, n), inverse = sk_keep(sk_positive(square), 1 / square);
-    sk_wide along = sk_dot_wide(n, v) * inverse, far = e->rest[2] * sk_wide_sqrt(inverse), b = e->rest[0], c = e->rest[1];
+    sk_wide along = sk_dot_wide(n, v) * inverse, far = e->rest[2] * sk_wide_sqrt(inverse), b = e->rest[0],
+            c = e->rest[1];
     sk_wide3 t = {far * (v.x - along * n.x), far * (v.y - along * n.y), far * (v.z - along * n.z)};
     g[0] = v;
-    g[2] = (sk_wide3){w.z * t.y - w.y * t.z - b * v.x, w.x * t.z - w.z * t.x - b * v.y, w.y * t.x - w.x * t.y - b * v.z};
-    g[3] = (sk_wide3){u.y * t.z - u.z * t.y - c * v.x, u.z * t.x - u.x * t.z - c * v.y, u.x * t.y - u.y * t.x - c * v.z};
+    g[2] =
+        (sk_wide3){w.z * t.y - w.y * t.z - b * v.x, w.x * t.z - w.z * t.x - b * v.y, w.y * t.x - w.x * t.y - b * v.z};
+    g[3] =
+        (sk_wide3){u.y * t.z - u.z * t.y - c * v.x, u.z * t.x - u.x * t.z - c * v.y, u.x * t.y - u.y * t.x - c * v.z};
     g[1] = (sk_wide3){-g[0].x - g[2].x - g[3].x, -g[0].y - g[2].y - g[3].y, -g[0].z - g[2].z - g[3].z};
 }
 #endif
@@ -36,8 +39,8 @@ static const skein_field fields[] = {
 };
 
 const sk_constraint_type sk_attachment = {
-    .kind = {"attachment", "ties a particle to its place on a triangle: the particle, then the three corners", SKEIN_CONSTRAINT, fields,
-             sizeof fields / sizeof *fields, sizeof(sk_material)},
+    .kind = {"attachment", "ties a particle to its place on a triangle: the particle, then the three corners",
+             SKEIN_CONSTRAINT, fields, sizeof fields / sizeof *fields, sizeof(sk_material)},
     SK_ELEMENT_RULES,
 };
 #endif

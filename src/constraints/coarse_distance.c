@@ -13,7 +13,8 @@
 #include "constraints/element_kind.h"
 
 #ifndef SK_ISA
-const struct sk_constraint_type sk_coarse_distance = { // (`struct` keeps it out of the build's list of kinds)
+const struct sk_constraint_type sk_coarse_distance = {
+    // (`struct` keeps it out of the build's list of kinds)
     .kind = {"coarse distance", "", SKEIN_CONSTRAINT, NULL, 0, sizeof(sk_material)},
     SK_ELEMENT_RULES,
     .limit = SK_WALKS_OF(limit),

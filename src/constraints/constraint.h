@@ -49,8 +49,8 @@ typedef struct sk_constraint_type {
     int (*rest_count_of)(const void *params);
     /* The rest values of an element whose particles stand at x[0 .. arity); false when there is no memory. */
     bool (*rest)(const void *params, const double (*x)[3], double *rest);
-    bool linear;    /* its elastic forces are linear in the positions, and 0 where all stand at the origin */
-    bool in_blocks; /* groups that share no particle are computed together */
+    bool linear;        /* its elastic forces are linear in the positions, and 0 where all stand at the origin */
+    bool in_blocks;     /* groups that share no particle are computed together */
     double most_change; /* of C in one projection; 0: any */
     sk_sweep_kernels force;
     sk_sweep_kernels project;        /* without damping, one pass a substep: no multiplier is kept */
@@ -83,8 +83,7 @@ typedef struct sk_constraint_type {
     /* For kinds whose batch is one constraint on all its elements, the triangles of a closed surface: makes the batch's
      * enclosure (enclosure.h), or says what is wrong with the surface. Their sweep kernels walk one group, apply and
      * diagonal the whole batch, and they have one energy, J, instead of `energy`. NULL for all others. */
-    skein_status (*enclose)(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles,
-                            skein_error *error);
+    skein_status (*enclose)(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles, skein_error *error);
     double (*whole_energy)(const sk_batch *batch, const sk_vec4 *x, size_t *guarded);
 } sk_constraint_type;
 
@@ -108,25 +107,27 @@ struct sk_batch {
     const char *label;
     const bool *enabled;
     const double *bound; /* on the relative violation, enforced by limit ops; NULL: none */
-    const double *tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing limits them,
+    const double *
+        tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing limits them,
                            * those that only too few sweeps can have left stretched are taken back (world/strained.c); NULL: never */
-    bool strained;       /* when the present step began some were near their bound, or beyond it */
-    bool only_bounds;    /* it only bounds: it does not pull, and is not counted */
-    double quickness;    /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
+    bool strained;     /* when the present step began some were near their bound, or beyond it */
+    bool only_bounds;  /* it only bounds: it does not pull, and is not counted */
+    double quickness;  /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
                             square of its angular frequency. If low for the substep, position methods may project the
                             batch in every second one, with the same stiffness; 0: in every one */
-    sk_coarse *coarse;   /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
-    sk_aggregate *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded; or NULL */
+    sk_coarse *coarse; /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
+    sk_aggregate
+        *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded; or NULL */
     uint32_t most_edges; /* of one that only bounds: so many edges of its body's surface lead from end to end of an element
                             at most; 0: that was not looked for yet (world/severed.c) */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */
     size_t count, arity, rest_count;
-    uint32_t *particle; /* count x arity, user's indices */
-    uint32_t *slot;     /* the same as slots, */
+    uint32_t *particle;          /* count x arity, user's indices */
+    uint32_t *slot;              /* the same as slots, */
     size_t first_slot, end_slot; /* which are all in [first, end) */
-    real *rest;         /* rest_count x count: first all first ones */
-    real *scale;        /* NULL: all 1 */
-    sk_elements whole;  /* all elements, if some are left out above; else empty */
+    real *rest;                  /* rest_count x count: first all first ones */
+    real *scale;                 /* NULL: all 1 */
+    sk_elements whole;           /* all elements, if some are left out above; else empty */
     bool broken, rests; /* of one constraint on all elements: some of its particles are gone, or take no part */
     bool asleep;        /* all that it is on sleeps: it is there, and does not act */
     uint32_t *pair;     /* arity (arity - 1)/2 x count: where pairs' blocks lie in the world's matrix; NULL: none */
@@ -191,8 +192,8 @@ uint32_t sk_batch_particle(const sk_batch *batch, size_t element, size_t i);
 const char *sk_batch_text(const sk_batch *batch);
 /* Does the work of skein_constraint_operations(). */
 skein_status sk_batch_operations(const sk_batch *batch, sk_allocator *allocator, double time, const sk_vec4 *x,
-                                 size_t element, skein_operation *out, double *derivatives, size_t most,
-                                 size_t *count, skein_error *error);
+                                 size_t element, skein_operation *out, double *derivatives, size_t most, size_t *count,
+                                 skein_error *error);
 
 /* Updates the lanes' rest values and stiffness to the parameters, if they are stale. */
 void sk_batch_refresh(sk_batch *batch);

@@ -83,11 +83,10 @@ static inline skein_groups sk_groups_of(sk_run *run, const sk_op *op, size_t beg
 #ifdef SK_ONLY_BOUNDS
 #define SK_ELEMENT_KERNELS SK_LIMIT_KERNELS
 #else
-#define SK_ELEMENT_KERNELS                                                                                      \
-    SK_WALK_KERNELS(force)                                                                                      \
-    SK_WALK_KERNELS(apply)                                                                                      \
-    SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS                                   \
-    SK_KERNELS(sk_op_kernel, diagonal);                                                                        \
+#define SK_ELEMENT_KERNELS                                                                                        \
+    SK_WALK_KERNELS(force)                                                                                        \
+    SK_WALK_KERNELS(apply)                                                                                        \
+    SK_WALK_KERNELS(project) SK_WALK_KERNELS(project_damped) SK_LIMIT_KERNELS SK_KERNELS(sk_op_kernel, diagonal); \
     SK_KERNELS(sk_op_kernel, blocks);
 #endif
 

@@ -86,7 +86,9 @@ static bool evaluate(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #ifdef SK_WITH_STRAIN
 static void strain(const sk_batch *batch, const sk_vec4 *x, size_t begin, size_t end, real *out) {
     for (size_t e = begin; e < end; e++)
-        out[e - begin] = batch->rest[e] > 0 ? (real)((SK_IS_ONE_SIDED ? -1 : 1) * value_of(batch, x, e) / (double)batch->rest[e]) : 0;
+        out[e - begin] = batch->rest[e] > 0
+                             ? (real)((SK_IS_ONE_SIDED ? -1 : 1) * value_of(batch, x, e) / (double)batch->rest[e])
+                             : 0;
 }
 #endif
 
@@ -138,13 +140,13 @@ static size_t energy(const sk_batch *batch, double time, const sk_vec4 *x, size_
 #define SK_IS_LINEAR false
 #endif
 #ifdef SK_ONLY_BOUNDS
-#define SK_ELEMENT_RULES                                                                                           \
-    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .energy = energy, .evaluate = evaluate,            \
+#define SK_ELEMENT_RULES                                                                                \
+    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .energy = energy, .evaluate = evaluate, \
     .text = formula_text
 #else
-#define SK_ELEMENT_RULES                                                                                           \
-    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                       \
-    .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply),  \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,     \
+#define SK_ELEMENT_RULES                                                                                               \
+    .arity = SK_ARITY, .rest_count = SK_RESTS, .rest = rest_of, .force = SK_WALKS_OF(force),                           \
+    .project = SK_WALKS_OF(project), .project_damped = SK_WALKS_OF(project_damped), .apply_sweep = SK_WALKS_OF(apply), \
+    .diagonal = {SK_EACH_ISA(diagonal)}, .blocks = {SK_EACH_ISA(blocks)}, .energy = energy, .evaluate = evaluate,      \
     .text = formula_text, .linear = SK_IS_LINEAR, .most_change = SK_MOST_CHANGE_OR_0
 #endif

@@ -92,7 +92,8 @@ void SK_KERNEL(diagonal)(sk_run *run, const sk_op *op, size_t begin, size_t end)
         for (size_t first = 0; first < count; first += SK_PART) {
             stiffen(&s, run, op, at + first, at + count);
             sk_wide3 on[SK_ARITY], beside[SK_ARITY], g[SK_ARITY];
-            SK_EACH_PARTICLE (i) on[i] = (sk_wide3){s.across, s.across, s.across}, beside[i] = (sk_wide3){{0}, {0}, {0}};
+            SK_EACH_PARTICLE (i)
+                on[i] = (sk_wide3){s.across, s.across, s.across}, beside[i] = (sk_wide3){{0}, {0}, {0}};
             for (int t = 0; t < SK_TERMS; t++) {
                 sk_wide push = term(&s, t, g);
                 SK_EACH_PARTICLE (i) {

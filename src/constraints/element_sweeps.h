@@ -288,15 +288,14 @@ SK_TOLD void sum_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, 
 }
 
 /* Defines the kernel, and its function for spans over the end of a strip. */
-#define SK_PULLS(name, applies)                                                                          \
-    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_op *op,                    \
-                                                        const sk_sweep *sweep,                           \
-                                                        const sk_element_constants *constants, size_t r, \
-                                                        const sk_span *span, const bool *gets) {         \
-        sum_turned(run, op, sweep, constants, r, span, gets, applies);                                   \
-    }                                                                                                    \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {             \
-        sum_strips(run, op, begin, end, applies, name##_turned);                                         \
+#define SK_PULLS(name, applies)                                                                              \
+    static __attribute__((noinline)) void name##_turned(sk_run *run, const sk_op *op, const sk_sweep *sweep, \
+                                                        const sk_element_constants *constants, size_t r,     \
+                                                        const sk_span *span, const bool *gets) {             \
+        sum_turned(run, op, sweep, constants, r, span, gets, applies);                                       \
+    }                                                                                                        \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {                 \
+        sum_strips(run, op, begin, end, applies, name##_turned);                                             \
     }
 SK_PULLS(force, false)
 SK_PULLS(apply, true)
@@ -328,11 +327,11 @@ SK_INLINE void meet_turned(sk_run *run, const sk_sweep *sweep, const sk_element_
         meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);
     else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);
 }
-#define SK_WALKS(name, mode)                                                                                 \
-    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, half, mode))                     \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {                 \
-        sweep_strips(run, op, begin, end, mode, name##_turned);                                              \
-    }                                                                                                        \
+#define SK_WALKS(name, mode)                                                                 \
+    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, half, mode))     \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) { \
+        sweep_strips(run, op, begin, end, mode, name##_turned);                              \
+    }                                                                                        \
     SK_GROUP_WALK(name, mode)
 #else
 #define SK_WALKS SK_GROUP_WALK

@@ -61,11 +61,10 @@ static skein_status check_closed(const sk_batch *batch, const edge *edges, const
     }
     if (!open) return SKEIN_OK;
     name_edge(first_open, particles, name, sizeof name);
-    return sk_fail(
-        error, SKEIN_ERROR_VALUE, "",
-        "the surface is open: %s belongs to one triangle only (%zu such edge%s); a closed surface has two at "
-        "every edge",
-        name, open, open == 1 ? "" : "s");
+    return sk_fail(error, SKEIN_ERROR_VALUE, "",
+                   "the surface is open: %s belongs to one triangle only (%zu such edge%s); a closed surface has two at "
+                   "every edge",
+                   name, open, open == 1 ? "" : "s");
 }
 
 /* ---- vertices ---- */

@@ -11,7 +11,8 @@
 #include "constraints/element_kind.h"
 
 #ifndef SK_ISA
-const struct sk_constraint_type sk_extension = { // (`struct` keeps it out of the build's list of kinds)
+const struct sk_constraint_type sk_extension = {
+    // (`struct` keeps it out of the build's list of kinds)
     .kind = {"extension", "", SKEIN_CONSTRAINT, NULL, 0, sizeof(sk_material)},
     SK_ELEMENT_RULES,
     .strain = strain,

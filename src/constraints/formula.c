@@ -65,7 +65,7 @@ typedef struct block {
     places to;
     size_t arity, rests;
     const skein_compiled *compiled; /* runs in place of the tape; NULL: the tape runs */
-    skein_element_values elements;        /* its arguments, which point to these: */
+    skein_element_values elements;  /* its arguments, which point to these: */
     const real *position[SK_MOST_ARITY], *rest[SKEIN_FORMULA_MOST_RESTS];
     real *output[3 * SK_MOST_ARITY * (3 * SK_MOST_ARITY + 1) / 2];
     real parameter[SKEIN_FORMULA_MOST_PARAMETERS];
@@ -87,12 +87,12 @@ static void begin_compiled(block *b, const sk_batch *batch, double time) {
     for (size_t r = 0; r < batch->rest_count; r++) b->rest[r] = register_of(b, b->to.rest[r]);
     for (size_t k = 0; k < b->tape->outputs; k++) b->output[k] = register_of(b, b->tape->output[k]);
     b->elements = (skein_element_values){.positions = b->position,
-                                   .stride = b->vectors * SK_PART,
-                                   .rest = b->rest,
-                                   .parameters = b->parameter,
-                                   .time = (real)time,
-                                   .elementary = sk_compiled_elementary(b->compiled->lanes),
-                                   .outputs = b->output};
+                                         .stride = b->vectors * SK_PART,
+                                         .rest = b->rest,
+                                         .parameters = b->parameter,
+                                         .time = (real)time,
+                                         .elementary = sk_compiled_elementary(b->compiled->lanes),
+                                         .outputs = b->output};
 }
 
 /* Once before all blocks of an op: sets what is the same for all elements. */
@@ -114,7 +114,8 @@ static void begin_block(block *b, const sk_batch *batch, const sk_tape *tape, co
     sk_tape_kernels_of[SK_THIS_ISA]->begin(tape, &input, b->registers, b->vectors);
     // a tape also runs on vectors that a block does not fill: these must be finite
     for (size_t p = 0; p < batch->arity; p++)
-        if (b->to.position[p] != NOWHERE) memset(register_of(b, b->to.position[p]), 0, 3 * b->vectors * sizeof(sk_wide));
+        if (b->to.position[p] != NOWHERE)
+            memset(register_of(b, b->to.position[p]), 0, 3 * b->vectors * sizeof(sk_wide));
     for (size_t r = 0; r < batch->rest_count; r++)
         if (b->to.rest[r] != NOWHERE) memset(register_of(b, b->to.rest[r]), 0, b->vectors * sizeof(sk_wide));
 }
@@ -158,8 +159,7 @@ SK_INLINE void take_answer(sk_element *e, const block *b, size_t arity, size_t i
     e->arity = (int)arity;
 #define OUTPUT(k_) registers[output[k_] * b->vectors]
     e->value = OUTPUT(0);
-    SK_EACH_PARTICLE_OF (e, p)
-        e->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
+    SK_EACH_PARTICLE_OF (e, p) e->gradient[p] = (sk_wide3){OUTPUT(3 * p + 1), OUTPUT(3 * p + 2), OUTPUT(3 * p + 3)};
     e->by_time = OUTPUT(3 * arity + 1);
 #undef OUTPUT
     judge(e, weighed);
@@ -209,11 +209,11 @@ SK_INLINE void meet_block(const skein_groups *g, const sk_element_constants *c, 
     }
 }
 
-#define MEETING(name_, arity_)                                                                                     \
-    SK_INLINE void name_(const skein_groups *g, const sk_element_constants *c, size_t first, size_t count,         \
-                         size_t packed, sk_element_mode mode, void *data) {                                        \
-        block *b = data;                                                                                           \
-        meet_block(g, c, first, count, packed, mode, b, (arity_));                                                 \
+#define MEETING(name_, arity_)                                                                             \
+    SK_INLINE void name_(const skein_groups *g, const sk_element_constants *c, size_t first, size_t count, \
+                         size_t packed, sk_element_mode mode, void *data) {                                \
+        block *b = data;                                                                                   \
+        meet_block(g, c, first, count, packed, mode, b, (arity_));                                         \
     }
 MEETING(meet_2, 2)
 MEETING(meet_3, 3)
@@ -348,7 +348,8 @@ static void start_walk(stiff_walk *w, const sk_run *run, const sk_op *op, size_t
     const sk_batch *batch = op->rule;
     const sk_constraint_formula *made = ((const sk_formula_params *)batch->params)->made;
     w->run = run, w->op = op, w->next = begin, w->end = end, w->part = 0;
-    begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled, run->time - op->before_end);
+    begin_block(&w->b, batch, made->is_energy ? &made->hessian : &made->single, made->compiled,
+                run->time - op->before_end);
 }
 
 /* Finds the matrices of the present part, over k: the stiffness, and that with damping. */

@@ -159,8 +159,8 @@ bool sk_formula_evaluate_one(const sk_batch *batch, double time, const sk_vec4 *
         parameters[(size_t)f->parameters + r] = (double)batch->rest[r * batch->count + element];
     skein_formula_value value;
     if (!sk_formula_value_at(f, positions, parameters, time, &value)) return false;
-    *answer = (sk_constraint_answer){value.number[0], value.by_time[0], made->is_energy, made->one_sided,
-                                     value.guarded};
+    *answer =
+        (sk_constraint_answer){value.number[0], value.by_time[0], made->is_energy, made->one_sided, value.guarded};
     for (size_t i = 0; i < batch->arity && i < most; i++)
         memcpy(gradient[i], value.by_position[0] + 3 * i, sizeof gradient[i]);
     return true;

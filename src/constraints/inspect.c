@@ -52,8 +52,11 @@ static skein_formula *read_again(const sk_batch *batch, sk_allocator *allocator,
     const skein_formula *own = own_formula(batch);
     const char *names[SKEIN_FORMULA_MOST_PARAMETERS + 1] = {NULL};
     for (int i = 0; own && i < own->parameters; i++) names[i] = own->parameter_name[i];
-    skein_formula_desc desc = {.text = sk_batch_text(batch), .parameters = names, .particles = (int)batch->arity,
-                               .comparison = true, .result = SKEIN_FORMULA_NUMBER};
+    skein_formula_desc desc = {.text = sk_batch_text(batch),
+                               .parameters = names,
+                               .particles = (int)batch->arity,
+                               .comparison = true,
+                               .result = SKEIN_FORMULA_NUMBER};
     return sk_formula_create(&desc, allocator, NULL, error);
 }
 
@@ -139,8 +142,8 @@ static void tell_operation(const parts *p, size_t i, skein_operation *out) {
 }
 
 skein_status sk_batch_operations(const sk_batch *batch, sk_allocator *allocator, double time, const sk_vec4 *x,
-                                 size_t element, skein_operation *out, double *derivatives, size_t most,
-                                 size_t *count, skein_error *error) {
+                                 size_t element, skein_operation *out, double *derivatives, size_t most, size_t *count,
+                                 skein_error *error) {
     size_t coordinates = 3 * batch->arity;
     parts p = {.formula = read_again(batch, allocator, error)};
     if (!p.formula) return error->status;

@@ -27,8 +27,7 @@ SK_INLINE void linear(sk_element *e) {
 static const skein_field fields[] = {
     SK_REAL(sk_material, stiffness, "stiffness", "N m", 0.01, 0, SK_UNBOUNDED,
             "the bending rigidity of a sheet; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR,
-            "the same against bending's change in time"),
+    SK_REAL(sk_material, damping, "damping", "N m s", 0, 0, SK_FAR, "the same against bending's change in time"),
 };
 
 const sk_constraint_type sk_isometric = {

@@ -273,8 +273,7 @@ static const skein_field pressure_fields[] = {
 #define AROUND_A_VOLUME                                                                                              \
     .arity = SK_ARITY, .force.groups = {SK_EACH_ISA(force_groups)}, .project.groups = {SK_EACH_ISA(project_groups)}, \
     .project_damped.groups = {SK_EACH_ISA(project_damped_groups)}, .apply = {SK_EACH_ISA(apply)},                    \
-    .diagonal = {SK_EACH_ISA(diagonal)}, .enclose = enclose, .whole_energy = whole_energy,                      \
-    .evaluate = evaluate
+    .diagonal = {SK_EACH_ISA(diagonal)}, .enclose = enclose, .whole_energy = whole_energy, .evaluate = evaluate
 
 const sk_constraint_type sk_enclosed_volume = {
     .kind = {"enclosed_volume", "keeps the volume inside a closed surface of triangles", SKEIN_CONSTRAINT,

@@ -14,8 +14,9 @@
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0], b = e->rest[1];
-    e->gradient[0] = (sk_wide3){a * (x[0].x - x[1].x) + b * (x[2].x - x[1].x), a * (x[0].y - x[1].y) + b * (x[2].y - x[1].y),
-                                a * (x[0].z - x[1].z) + b * (x[2].z - x[1].z)};
+    e->gradient[0] =
+        (sk_wide3){a * (x[0].x - x[1].x) + b * (x[2].x - x[1].x), a * (x[0].y - x[1].y) + b * (x[2].y - x[1].y),
+                   a * (x[0].z - x[1].z) + b * (x[2].z - x[1].z)};
     e->scale[0] = a, e->scale[1] = -(a + b), e->scale[2] = b;
 }
 #endif

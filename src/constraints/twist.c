@@ -13,8 +13,9 @@
 SK_INLINE void linear(sk_element *e) {
     const sk_wide3 *x = e->x;
     sk_wide a = e->rest[0];
-    e->gradient[0] = (sk_wide3){a * ((x[0].x - x[1].x) + (x[2].x - x[3].x)), a * ((x[0].y - x[1].y) + (x[2].y - x[3].y)),
-                                a * ((x[0].z - x[1].z) + (x[2].z - x[3].z))};
+    e->gradient[0] =
+        (sk_wide3){a * ((x[0].x - x[1].x) + (x[2].x - x[3].x)), a * ((x[0].y - x[1].y) + (x[2].y - x[3].y)),
+                   a * ((x[0].z - x[1].z) + (x[2].z - x[3].z))};
     e->scale[0] = e->scale[2] = a, e->scale[1] = e->scale[3] = -a;
 }
 #endif

@@ -11,8 +11,7 @@
 static const skein_field fields[] = {
     SK_REAL(sk_material, stiffness, "stiffness", "Pa/m3", 1e9, 0, SK_UNBOUNDED,
             "pressure a cubic metre of change; \"infinite\" is rigid (position methods only)"),
-    SK_REAL(sk_material, damping, "damping", "Pa s/m3", 0, 0, SK_FAR,
-            "the same against the volume's change in time"),
+    SK_REAL(sk_material, damping, "damping", "Pa s/m3", 0, 0, SK_FAR, "the same against the volume's change in time"),
 };
 
 const sk_constraint_type sk_volume = {

@@ -85,7 +85,8 @@ typedef struct loading {
 static void load_some_ends(void *data, int thread, size_t begin, size_t end) {
     (void)thread;
     const loading *job = data;
-    for (size_t v = begin; v < end; v++) job->touch->q[v] = sk_load(job->run->vector[SK_X], job->op->packed, job->touch->slot[v]);
+    for (size_t v = begin; v < end; v++)
+        job->touch->q[v] = sk_load(job->run->vector[SK_X], job->op->packed, job->touch->slot[v]);
 }
 
 /* Threads raise the same number: the most stays, whoever comes first. */
@@ -216,8 +217,11 @@ static bool are_apart(const sk_touch *touch, const line *l) {
             if (end) x = sk_add(x, sk_scale(touch->share[l->v[c]], sk_xyz(touch->way[l->v[c]])));
             int f = c >= l->first;
             bool new = c == 0 || c == l->first;
-            low[f][end] = new ? x : (sk_vec3){sk_min(low[f][end].x, x.x), sk_min(low[f][end].y, x.y), sk_min(low[f][end].z, x.z)};
-            high[f][end] = new ? x : (sk_vec3){sk_max(high[f][end].x, x.x), sk_max(high[f][end].y, x.y), sk_max(high[f][end].z, x.z)};
+            low[f][end] =
+                new ? x : (sk_vec3){sk_min(low[f][end].x, x.x), sk_min(low[f][end].y, x.y), sk_min(low[f][end].z, x.z)};
+            high[f][end] =
+                new ? x
+                    : (sk_vec3){sk_max(high[f][end].x, x.x), sk_max(high[f][end].y, x.y), sk_max(high[f][end].z, x.z)};
         }
     bool apart = false;
     for (int f = 0; f < 2; f++) {
@@ -292,11 +296,13 @@ static void take_some_shares(void *data, int thread, size_t begin, size_t end) {
         touch->lowered[v] = touch->next_share[v] < touch->share[v];
         if (!touch->lowered[v]) continue;
         real share = touch->share[v] = touch->next_share[v];
-        sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])), to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), step);
+        sk_vec3 step = sk_scale(share, sk_xyz(touch->way[v])),
+                to = sk_add(sk_add(sk_xyz(touch->stand[v]), common), step);
         if (touch->wild[v]) continue;
         sk_vec3 off = sk_sub(sk_sub(to, touch->shift[1]), sk_expected(&touch->course[v], touch->now + 1));
         sk_vec3 other = sk_sub(sk_sub(sk_add(common, step), gone), touch->course[v].step);
-        touch->lost[v] = sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach || sk_dot(other, other) > jump * jump;
+        touch->lost[v] =
+            sk_dot(off, off) > touch->course[v].reach * touch->course[v].reach || sk_dot(other, other) > jump * jump;
         any |= touch->lost[v];
     }
     if (any) __atomic_store_n(&job->found, true, __ATOMIC_RELAXED);
@@ -362,8 +368,9 @@ static void list_some_that_may(void *data, int thread, size_t begin, size_t end)
         for (uint64_t bits = sk_pairs_that(pairs, b, SK_MAY_CLOSE); bits; bits &= bits - 1) {
             size_t k = b + sk_first_of(bits);
             if (k < job->first || !(pairs->thickness[k] > 0)) continue;
-            found[n++] = (sk_closing_pair){2 * (uint32_t)k + job->late, {pairs->corner[0][k], pairs->corner[1][k],
-                                                                        pairs->corner[2][k], pairs->corner[3][k]}};
+            found[n++] =
+                (sk_closing_pair){2 * (uint32_t)k + job->late,
+                                  {pairs->corner[0][k], pairs->corner[1][k], pairs->corner[2][k], pairs->corner[3][k]}};
         }
         if (n + 8 <= SOME && b + 8 < 8 * end) continue;
         if (n) put_closing(job->list, found, n);
@@ -385,7 +392,8 @@ bool sk_touch_list_closing(sk_touch *touch, sk_allocator *allocator, real least,
             closing job = {touch, pairs[late], sort, {least, known * touch->thickness, touch->longest}};
             sk_parallel_for(touch->tasks, first[late] / 16 * 16, pairs[late]->count, find_closing, &job);
             listing found = {list, pairs[late], first[late], late};
-            sk_parallel_pieces(touch->tasks, first[late] / 8, (pairs[late]->count + 7) / 8, BLOCKS_AT_ONCE, list_some_that_may, &found);
+            sk_parallel_pieces(touch->tasks, first[late] / 8, (pairs[late]->count + 7) / 8, BLOCKS_AT_ONCE,
+                               list_some_that_may, &found);
         }
         touch->told_apart[sort] = pairs[1]->count;
     }
@@ -455,7 +463,8 @@ static bool store_ways(sk_touch *touch, sk_allocator *allocator, const sk_run *r
         if (!(touch->share[v] < 1)) continue;
         any = true;
         const sk_vec3 from = sk_add(sk_xyz(touch->stand[v]), touch->common);
-        sk_store_at(run->vector[SK_X], op->packed, touch->slot[v], sk_add(from, sk_scale(touch->share[v], sk_xyz(touch->way[v]))));
+        sk_store_at(run->vector[SK_X], op->packed, touch->slot[v],
+                    sk_add(from, sk_scale(touch->share[v], sk_xyz(touch->way[v]))));
     }
     if (!any) return true;
     sk_touch_lose_velocities(touch, run, op);
@@ -475,7 +484,8 @@ static bool stay_all_out(sk_touch *touch, const sk_vec4 *x, const sk_op *op) {
 static bool bound(sk_touch *touch, sk_run *run, const sk_op *op, bool solved) {
     real least = SK_LEAST_GAP * touch->thickness;
     const sk_vec4 *x = run->vector[SK_X];
-    const bool all_out = sk_spread_is_all_out(&touch->spread) && !sk_pairs_kept(touch), some_out = touch->spread.out_count > 0;
+    const bool all_out = sk_spread_is_all_out(&touch->spread) && !sk_pairs_kept(touch),
+               some_out = touch->spread.out_count > 0;
     bool lost = all_out;
     if (all_out && stay_all_out(touch, x, op)) {
         if (touch->before != touch->copied) touch->before = NULL; // the method keeps it no longer

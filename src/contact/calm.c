@@ -16,8 +16,8 @@ typedef struct sk_moves {
 } sk_moves;
 
 /* To places q, from p, where all go `common`; without p, of q alone. */
-typedef void sk_moves_kernel(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q, const sk_calm *calm, size_t group,
-                             sk_moves *moves);
+typedef void sk_moves_kernel(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q, const sk_calm *calm,
+                             size_t group, sk_moves *moves);
 SK_KERNELS(sk_moves_kernel, moves);
 
 #ifdef SK_ISA
@@ -29,8 +29,10 @@ typedef struct moves_box {
 } moves_box;
 
 SK_INLINE moves_box around(moves_box box, sk_wide3 move) {
-    box.low = (sk_wide3){sk_least_wide(box.low.x, move.x), sk_least_wide(box.low.y, move.y), sk_least_wide(box.low.z, move.z)};
-    box.high = (sk_wide3){sk_most_wide(box.high.x, move.x), sk_most_wide(box.high.y, move.y), sk_most_wide(box.high.z, move.z)};
+    box.low = (sk_wide3){sk_least_wide(box.low.x, move.x), sk_least_wide(box.low.y, move.y),
+                         sk_least_wide(box.low.z, move.z)};
+    box.high = (sk_wide3){sk_most_wide(box.high.x, move.x), sk_most_wide(box.high.y, move.y),
+                          sk_most_wide(box.high.z, move.z)};
     return box;
 }
 
@@ -79,13 +81,15 @@ SK_INLINE frame frame_of(sk_wide3 a, sk_wide3 b, sk_wide3 c) {
     sk_wide3 across = cross(f.x, other);
     f.z = unit(across);
     f.y = cross(f.z, f.x);
-    f.good = sk_more(sk_dot_wide(across, across), least * sk_dot_wide(other, other) + some) & sk_more(sk_dot_wide(along, along), some);
+    f.good = sk_more(sk_dot_wide(across, across), least * sk_dot_wide(other, other) + some) &
+             sk_more(sk_dot_wide(along, along), some);
     return f;
 }
 
 /* How far a vertex is from where it would be, had its patch only turned; in directions of the patch. */
 SK_INLINE sk_wide3 off(const frame *now, const frame *then, sk_wide3 at, sk_wide3 began) {
-    return (sk_wide3){sk_dot_wide(now->x, at) - sk_dot_wide(then->x, began), sk_dot_wide(now->y, at) - sk_dot_wide(then->y, began),
+    return (sk_wide3){sk_dot_wide(now->x, at) - sk_dot_wide(then->x, began),
+                      sk_dot_wide(now->y, at) - sk_dot_wide(then->y, began),
                       sk_dot_wide(now->z, at) - sk_dot_wide(then->z, began)};
 }
 
@@ -209,7 +213,8 @@ static sk_pairs pairs_of(const sk_calm *calm, size_t p, int sort, int thread) {
     sk_pairs pairs = {.count = calm->start[sort][p + 1] - calm->start[sort][p], .closes = calm->found + first};
     for (int c = 0; c < 4; c++) pairs.corner[c] = calm->corner[sort][c] + calm->start[sort][p];
     pairs.thickness = calm->thickness[sort] + calm->start[sort][p];
-    real **out[] = {&pairs.distance, &pairs.normal[0], &pairs.normal[1], &pairs.normal[2], &pairs.share[0], &pairs.share[1]};
+    real **out[] = {&pairs.distance,  &pairs.normal[0], &pairs.normal[1],
+                    &pairs.normal[2], &pairs.share[0],  &pairs.share[1]};
     for (size_t i = 0; i < sizeof out / sizeof *out; i++) *out[i] = calm->scratch + SCRATCH_ROWS * first + i * row;
     return pairs;
 }

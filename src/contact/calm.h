@@ -30,8 +30,8 @@ typedef struct sk_calm_patch {
     real slack;    /* m: so much may its vertices move against each other; */
     real distance; /* and how far apart the nearest of its pairs were, where the moves begin */
     bool calm;
-    bool whole;    /* while all its vertices go all of their ways in this substep: not if one is held back */
-    bool ceased;   /* to be calm: its pairs are to be kept */
+    bool whole;  /* while all its vertices go all of their ways in this substep: not if one is held back */
+    bool ceased; /* to be calm: its pairs are to be kept */
 } sk_calm_patch;
 
 typedef struct sk_calm {
@@ -49,7 +49,7 @@ typedef struct sk_calm {
     /* vertices of sixteen patches, one patch a lane: rows from row_start[sixteen] on, filled up with the first again; the
      * first three tell how it has turned */
     uint32_t *row_start, *row;
-    real *from; /* x, y, z of sixteen lanes for each row: where they were when distances were looked at */
+    real *from;  /* x, y, z of sixteen lanes for each row: where they were when distances were looked at */
     real *holds; /* of sixteen patches: all that were calm are while `gone` is no more */
     real least;  /* the least of these */
     real gone;   /* m: how much two vertices may have moved against each other, at most, substep after substep */

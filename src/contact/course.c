@@ -10,8 +10,8 @@ SK_KERNELS(sk_course_kernel, off);
 #ifdef SK_ISA
 #include "contact/lanes.h"
 
-bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block, real time,
-                    const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way) {
+bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block,
+                    real time, const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way) {
     const sk_wide t = sk_splat(time), sx = sk_splat(shift->x), sy = sk_splat(shift->y), sz = sk_splat(shift->z);
     const sk_wide gx = sk_splat(gone->x), gy = sk_splat(gone->y), gz = sk_splat(gone->z);
     sk_wide farthest = sk_splat(0);
@@ -21,7 +21,8 @@ bool SK_KERNEL(off)(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size
         for (size_t part = 0; part < SK_PARTS; part++) {
             size_t l = part * SK_PART;
             sk_wide4 at = sk_load_part(x, 16 * b + l, 16 * b < packed);
-            const sk_wide3 step = {*sk_row(block[b].step[0] + l), *sk_row(block[b].step[1] + l), *sk_row(block[b].step[2] + l)};
+            const sk_wide3 step = {*sk_row(block[b].step[0] + l), *sk_row(block[b].step[1] + l),
+                                   *sk_row(block[b].step[2] + l)};
             const sk_wide square = *sk_row(block[b].square + l);
             sk_wide3 r = {at.x - sx - *sk_row(block[b].from[0] + l) - t * step.x,
                           at.y - sy - *sk_row(block[b].from[1] + l) - t * step.y,
@@ -62,8 +63,8 @@ bool sk_touch_mark_lost(sk_touch *touch, const sk_vec4 *x, size_t packed, real t
     const real jump = sk_most_jump(touch);
     const sk_vec3 gone = sk_sub(touch->shift[1], touch->shift[0]);
     real way = 0;
-    bool any = sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block, time,
-                                         &touch->shift[after], &gone, jump * jump, touch->off, &way);
+    bool any = sk_course_off[touch->isa](x, after ? touch->before : NULL, packed, touch->slots, touch->course_block,
+                                         time, &touch->shift[after], &gone, jump * jump, touch->off, &way);
     touch->farthest = sk_sqrt(way);
     if (!any) return false;
     for (size_t b = 0; b < touch->slots / 16; b++)
@@ -76,7 +77,8 @@ real sk_touch_farthest(sk_touch *touch, const sk_vec4 *x, size_t packed) {
     const sk_vec3 none = {0, 0, 0};
     real way = 0;
     if (touch->wild_count || !touch->before) return SK_REAL_MAX; // of those nobody knows
-    sk_course_off[touch->isa](x, touch->before, packed, touch->slots, touch->course_block, 0, &none, &none, 0, touch->off, &way);
+    sk_course_off[touch->isa](x, touch->before, packed, touch->slots, touch->course_block, 0, &none, &none, 0,
+                              touch->off, &way);
     return sk_sqrt(way);
 }
 

@@ -25,7 +25,8 @@ static double flat(const sk_vec4 *a, const sk_vec4 *b, const sk_vec4 *c) {
 }
 
 static bool have_corner(const uint32_t edge[2], const uint32_t t[3]) {
-    return (edge[0] == t[0]) | (edge[0] == t[1]) | (edge[0] == t[2]) | (edge[1] == t[0]) | (edge[1] == t[1]) | (edge[1] == t[2]);
+    return (edge[0] == t[0]) | (edge[0] == t[1]) | (edge[0] == t[2]) | (edge[1] == t[0]) | (edge[1] == t[1]) |
+           (edge[1] == t[2]);
 }
 
 static sk_vec4 moved(sk_vec4 x, sk_vec3 by) {
@@ -54,7 +55,9 @@ static bool list_of(sk_touch *touch, sk_allocator *allocator, sk_crossing_list *
             if (have_corner(skin->edge[e], skin->triangle[t])) continue; // as around a leaf most have
             if (!sk_boxes_meet(&touch->edge_box[e], &touch->triangle_box[t])) continue;
             // (what is in the other by less than it is taken to be aside would be held there)
-            if (!crosses(touch, skin->edge[e], skin->triangle[t], false) && !(aside && crosses(touch, skin->edge[e], skin->triangle[t], true))) continue;
+            if (!crosses(touch, skin->edge[e], skin->triangle[t], false) &&
+                !(aside && crosses(touch, skin->edge[e], skin->triangle[t], true)))
+                continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
             list->data[list->count++] = (sk_crossing){e, t};
         }
@@ -83,7 +86,8 @@ void sk_touch_load_from(sk_touch *touch, const sk_vec4 *x, const uint32_t *slot_
     touch->tasks = NULL;
 }
 
-bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list, bool aside) {
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list,
+                             bool aside) {
     list->count = 0;
     sk_touch_put_boxes(touch, 0);
     if (of) {
@@ -91,7 +95,8 @@ bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uin
         touch->everybody = false;
         memset(touch->anew, 0, skin->leaf_count);
         for (size_t v = 0; v < skin->vertex_count; v++)
-            for (uint32_t k = skin->leaf_start[v]; of[v] && k < skin->leaf_start[v + 1]; k++) touch->anew[skin->leaf_of[k]] = 1;
+            for (uint32_t k = skin->leaf_start[v]; of[v] && k < skin->leaf_start[v + 1]; k++)
+                touch->anew[skin->leaf_of[k]] = 1;
     }
     bool too_many, good = sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
     for (size_t i = 0; i < touch->partner.count && good; i++) {

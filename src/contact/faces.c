@@ -43,10 +43,12 @@ typedef struct meeting {
     bool *loaded;
     const sk_collider *collider;
     sk_pose pose, start;
-    real h, thickness, reach, far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
+    real h, thickness, reach,
+        far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
 } meeting;
 
-static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, real reach, sk_sixteen_contacts *contacts) {
+static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, real reach,
+                  sk_sixteen_contacts *contacts) {
     SK_VECTOR_ALIGNED real at[3][LANES];
     for (size_t l = 0; l < LANES; l++) {
         const sk_vec3 x = place[l < count ? l : 0];
@@ -85,7 +87,9 @@ static void look(const meeting *m, batch *b) {
 /* Where the tangents at both ends meet, and how far from the solid. */
 static tangent meet_of(const tangent end[2]) {
     const tangent a = end[0], b = end[1];
-    const real t = a.slope < b.slope ? sk_max(a.t, sk_min(b.t, (b.f - b.slope * b.t - a.f + a.slope * a.t) / (a.slope - b.slope))) : b.t;
+    const real t = a.slope < b.slope
+                       ? sk_max(a.t, sk_min(b.t, (b.f - b.slope * b.t - a.f + a.slope * a.t) / (a.slope - b.slope)))
+                       : b.t;
     return (tangent){t, a.f + a.slope * (t - a.t), 0};
 }
 
@@ -141,13 +145,15 @@ static void clip_line(const real a[3], const real b[3], real line[2][3]) {
 static void find_within(const meeting *m, batch *b) {
     real ends[2][LANES] = {{0}}, before[LANES][3];
     tangent found[LANES];
-    for (size_t l = 0; l < b->count; l++) b->weight[l][0] = b->weight[l][1] = b->weight[l][2] = (real)(1.0 / 3), ends[1][l] = 1;
+    for (size_t l = 0; l < b->count; l++)
+        b->weight[l][0] = b->weight[l][1] = b->weight[l][2] = (real)(1.0 / 3), ends[1][l] = 1;
     for (int round = 0; round < 2; round++) {
         look(m, b);
         for (size_t l = 0; l < b->count; l++) {
             const real f = b->contacts.distance[l];
             // from within a solid, where there is no nearest place of both, a little further in
-            const sk_vec3 to = sk_sub(b->place[l], sk_scale(f > 0 ? f : (real)0.5 * m->thickness, normal_of(&b->contacts, l)));
+            const sk_vec3 to =
+                sk_sub(b->place[l], sk_scale(f > 0 ? f : (real)0.5 * m->thickness, normal_of(&b->contacts, l)));
             memcpy(before[l], b->weight[l], sizeof before[l]);
             find_weights(b->corner[l], to, b->weight[l]);
         }
@@ -174,8 +180,11 @@ static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m
         sk_vec3 before[3];
         for (int c = 0; c < 3; c++) before[c] = sk_xyz(m->touch->p[face->corner[c]]);
         b->place[count++] = sum_of(face->weight, before);
-        face->wanted = sk_dot(face->normal, face->way); // what it had more of a distance, where the surface came by itself
-        face->way = sk_add(face->way, sk_scale(m->h, sk_add(m->pose.velocity, sk_cross(m->pose.spin, sk_sub(face->at, m->pose.position)))));
+        face->wanted =
+            sk_dot(face->normal, face->way); // what it had more of a distance, where the surface came by itself
+        face->way = sk_add(
+            face->way,
+            sk_scale(m->h, sk_add(m->pose.velocity, sk_cross(m->pose.spin, sk_sub(face->at, m->pose.position)))));
         faces->near.data[faces->near.count++] = *face;
     }
     b->count = 0;
@@ -201,12 +210,14 @@ static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void
     for (int c = 0; c < corners; c++) {
         const sk_vec4 plane = touch->faces.plane[v[c]];
         if (!(plane.w < SK_REAL_MAX)) return;
-        const real slope = corners == 2 ? fall(touch, v[c], v[1 - c]) : sk_min(fall(touch, v[c], v[(c + 1) % 3]), fall(touch, v[c], v[(c + 2) % 3]));
+        const real slope = corners == 2 ? fall(touch, v[c], v[1 - c])
+                                        : sk_min(fall(touch, v[c], v[(c + 1) % 3]), fall(touch, v[c], v[(c + 2) % 3]));
         if (!(slope < 0)) return;
         low = sk_max(low, plane.w + slope);
         b->end[b->count][c & 1] = (tangent){(real)(c & 1), plane.w, c ? -slope : slope};
     }
-    if (!(low < m->reach) || !(corners == 3 || meet_of(b->end[b->count]).f < m->reach) || !sk_only_has(&m->collider->only, touch->skin.particle[v[0]]))
+    if (!(low < m->reach) || !(corners == 3 || meet_of(b->end[b->count]).f < m->reach) ||
+        !sk_only_has(&m->collider->only, touch->skin.particle[v[0]]))
         return;
     for (int c = 0; c < 3; c++) {
         face->corner[c] = v[c < corners ? c : 0];
@@ -255,7 +266,8 @@ static bool find_planes(const meeting *m) {
     for (size_t first = 0; first < count; first += LANES) {
         const size_t lanes = count - first < LANES ? count - first : LANES;
         real widest = 0;
-        for (size_t l = 0; l < lanes; l++) place[l] = sk_xyz(block[first + l]), widest = sk_max(widest, block[first + l].w);
+        for (size_t l = 0; l < lanes; l++)
+            place[l] = sk_xyz(block[first + l]), widest = sk_max(widest, block[first + l].w);
         probe(m, &m->pose, place, lanes, widest + m->far, &contacts);
         for (size_t l = 0; l < lanes; l++) {
             if (block[first + l].w < 0 || !(contacts.distance[l] < block[first + l].w + m->far)) continue;
@@ -316,7 +328,8 @@ static void find_blocks(sk_touch *touch, const sk_run *run, const sk_op *op) {
     *all = (sk_vec4){0, 0, 0, -1};
     for (; block < all; block++) {
         if (all->w < 0) *all = *block;
-        else if (block->w >= 0) all->w = sk_max(all->w, (real)1.0001 * (block->w + sk_length(sk_sub(sk_xyz(*block), sk_xyz(*all)))));
+        else if (block->w >= 0)
+            all->w = sk_max(all->w, (real)1.0001 * (block->w + sk_length(sk_sub(sk_xyz(*block), sk_xyz(*all)))));
     }
 }
 
@@ -339,8 +352,17 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
     for (size_t i = 0; i < faces->count && !run->no_memory; i++) {
         const sk_collider *collider = faces->collider[i];
         const real thickness = (real)collider->common->thickness;
-        const meeting m = {touch, run, op, &loaded, collider, sk_collider_pose_at(collider, run->time - op->before_end), sk_collider_pose_at(collider, run->time - op->dt),
-                           (real)op->dt, thickness, (real)1.5 * thickness, (real)1.5 * (thickness + touch->skin.longest)};
+        const meeting m = {touch,
+                           run,
+                           op,
+                           &loaded,
+                           collider,
+                           sk_collider_pose_at(collider, run->time - op->before_end),
+                           sk_collider_pose_at(collider, run->time - op->dt),
+                           (real)op->dt,
+                           thickness,
+                           (real)1.5 * thickness,
+                           (real)1.5 * (thickness + touch->skin.longest)};
         if (collider->common->enabled) find_at(&m);
     }
 }
@@ -349,7 +371,8 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
 static bool go_on(sk_touch *touch, const sk_run *run) {
     sk_faces *faces = &touch->faces;
     const bool known = run->iteration > 0 && faces->clock + 1 == touch->clock;
-    for (size_t i = 0; i < faces->near.count && known; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+    for (size_t i = 0; i < faces->near.count && known; i++)
+        faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
     return known;
 }
 
@@ -358,7 +381,8 @@ void sk_touch_start_faces(sk_touch *touch, sk_run *run, const sk_op *op) {
     if (!faces->count || !touch->found) return;
     if (!go_on(touch, run)) {
         find_all(touch, run, op);
-        for (size_t i = 0; i < faces->near.count; i++) faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
+        for (size_t i = 0; i < faces->near.count; i++)
+            faces->near.data[i].at = sk_add(faces->near.data[i].at, faces->near.data[i].way);
     }
     faces->clock = touch->clock;
 }
@@ -377,7 +401,8 @@ void sk_touch_push_faces(sk_run *run, const sk_op *op, size_t from, size_t end) 
         const sk_face *face = &faces->near.data[i];
         sk_vec3 x[3];
         for (int c = 0; c < 3; c++) x[c] = sk_xyz(sk_load(run->vector[SK_X], op->packed, touch->slot[face->corner[c]]));
-        if (sk_dot(face->normal, sk_sub(sum_of(face->weight, x), face->at)) < face->wanted) sk_touch_push_face(touch, run, op, face);
+        if (sk_dot(face->normal, sk_sub(sum_of(face->weight, x), face->at)) < face->wanted)
+            sk_touch_push_face(touch, run, op, face);
     }
 }
 

@@ -8,8 +8,8 @@
 /* An edge or a triangle near a collider: where it is nearest, and the surface there. */
 typedef struct sk_face {
     uint32_t corner[3];
-    real weight[3]; /* of an edge, the last is 0 */
-    sk_vec3 normal, at, way; /* of the surface: unit, m, and m in a substep */
+    real weight[3];                   /* of an edge, the last is 0 */
+    sk_vec3 normal, at, way;          /* of the surface: unit, m, and m in a substep */
     real thickness, wanted, friction; /* m: how far off it is to be, in the end and now */
 } sk_face;
 

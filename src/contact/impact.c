@@ -25,7 +25,8 @@
 
 static void add_momentum(sk_whole *whole, double mass, sk_vec3 v) {
     whole->mass += mass;
-    whole->momentum[0] += mass * (double)v.x, whole->momentum[1] += mass * (double)v.y, whole->momentum[2] += mass * (double)v.z;
+    whole->momentum[0] += mass * (double)v.x, whole->momentum[1] += mass * (double)v.y,
+        whole->momentum[2] += mass * (double)v.z;
 }
 
 /* Of all pieces, and of groups. */
@@ -38,7 +39,8 @@ static void forget_momenta(sk_touch *touch) {
 }
 
 static void gain(const sk_run *run, const sk_op *op, uint32_t slot, const double what[3], double share) {
-    sk_add_at(run->vector[SK_V], op->packed, slot, (sk_vec3){(real)(share * what[0]), (real)(share * what[1]), (real)(share * what[2])});
+    sk_add_at(run->vector[SK_V], op->packed, slot,
+              (sk_vec3){(real)(share * what[0]), (real)(share * what[1]), (real)(share * what[2])});
 }
 
 /* ---- who loses it ---- */
@@ -58,7 +60,8 @@ static bool find_tangled(sk_touch *touch) {
     bool any = false;
     for (size_t i = 0; i < touch->tangle.crossing.count; i++) {
         const sk_crossing *crossing = &touch->tangle.crossing.data[i];
-        const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
+        const uint32_t one = skin->piece[skin->edge[crossing->edge][0]],
+                       other = skin->piece[skin->triangle[crossing->triangle][0]];
         if (skin->closed[one] && skin->closed[other]) continue;
         touch->loses[one] = touch->loses[other] = SHARES_LOSS;
         any = true;
@@ -130,7 +133,8 @@ void sk_touch_lose_velocities(sk_touch *touch, const sk_run *run, const sk_op *o
             change = sk_scale(rate, sk_sub(to, sk_xyz(touch->q[v])));
             sk_add_at(run->vector[SK_V], op->packed, touch->slot[v], change);
         }
-        if (loses == SHARES_LOSS) add_momentum(group_of(touch, piece), 1 / (double)touch->inverse[v], sk_scale(-1, change));
+        if (loses == SHARES_LOSS)
+            add_momentum(group_of(touch, piece), 1 / (double)touch->inverse[v], sk_scale(-1, change));
     }
     if (shared) give_back(touch, run, op);
 }
@@ -175,7 +179,8 @@ static void part(sk_whole *one, sk_whole *other) {
 static bool of_solids(const sk_touch *touch, size_t i, sk_whole *solid[2]) {
     const sk_skin *skin = &touch->skin;
     const sk_crossing *crossing = &touch->tangle.crossing.data[i];
-    const uint32_t one = skin->piece[skin->edge[crossing->edge][0]], other = skin->piece[skin->triangle[crossing->triangle][0]];
+    const uint32_t one = skin->piece[skin->edge[crossing->edge][0]],
+                   other = skin->piece[skin->triangle[crossing->triangle][0]];
     solid[0] = &touch->tangle.whole[one], solid[1] = &touch->tangle.whole[other];
     return one != other && skin->closed[one] && skin->closed[other];
 }
@@ -235,13 +240,15 @@ static void share_in_pair(const sk_touch *touch, const sk_run *run, const sk_op 
     const uint32_t *v = pair->corner;
     const sk_vec3 n = pair->normal;
     const int second = sort == SK_EDGES ? 2 : 1;
-    const uint32_t upper = v[farthest(touch, v, 0, second, sk_scale(-1, n))], lower = v[farthest(touch, v, second, 4, n)];
+    const uint32_t upper = v[farthest(touch, v, 0, second, sk_scale(-1, n))],
+                   lower = v[farthest(touch, v, second, 4, n)];
     const real gives[2] = {touch->inverse[upper], touch->inverse[lower]};
     if (!(gives[0] + gives[1] > 0)) return;
     sk_vec4 *velocity = run->vector[SK_V];
     const size_t slot[2] = {touch->slot[upper], touch->slot[lower]};
     const sk_vec3 parted = sk_scale((real)(1 / op->dt), sk_sub(gone(touch, upper), gone(touch, lower)));
-    const sk_vec3 part = sk_sub(sk_xyz(sk_load(velocity, op->packed, slot[0])), sk_xyz(sk_load(velocity, op->packed, slot[1])));
+    const sk_vec3 part =
+        sk_sub(sk_xyz(sk_load(velocity, op->packed, slot[0])), sk_xyz(sk_load(velocity, op->packed, slot[1])));
     const real missing = sk_dot(n, sk_sub(parted, part));
     if (!(missing > least * pair->thickness / (real)op->dt)) return;
     const sk_vec3 blow = sk_scale(missing / (gives[0] + gives[1]), n);
@@ -264,12 +271,14 @@ static sk_vec3 excess_of(const sk_touch *touch, const sk_run *run, const sk_op *
  * has, and what holds the group up takes its share. (Of 160 sacks of cloth in each other, with boxes in and on them, 3 had 1,200 to 6,500 J after 8 s;
  * now 53 at most. Where all of it was lost to nobody, a box on a sack drove off by that.) */
 static void lose_excess(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    const real lost = (real)0.01, most = (real)0.1, rate = (real)(1 / op->dt); // of what is a thickness a substep; at most
+    const real lost = (real)0.01, most = (real)0.1,
+               rate = (real)(1 / op->dt); // of what is a thickness a substep; at most
     const size_t count = touch->skin.vertex_count;
     bool any = false;
     for (size_t v = 0; v < count && !any; v++) any = sk_length(excess_of(touch, run, op, v)) > 0;
     if (!any) return;
-    for (uint32_t i = 0; i < count && !touch->tangle.any; i++) touch->tangle.group[i] = i; // or crossings have joined it
+    for (uint32_t i = 0; i < count && !touch->tangle.any; i++)
+        touch->tangle.group[i] = i; // or crossings have joined it
     join_divided(touch);
     forget_momenta(touch);
     memset(touch->loses, SHARES_LOSS, count);

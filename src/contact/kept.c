@@ -81,7 +81,8 @@ void sk_touch_leave_out(sk_touch *touch) {
             const size_t count = pairs->count;
             pairs->count = 0;
             for (size_t k = 0; k < count; k++) {
-                bool out = sk_spread_has(&touch->spread, sk_first_leaf(pairs->key[k])) || sk_spread_has(&touch->spread, sk_second_leaf(pairs->key[k]));
+                bool out = sk_spread_has(&touch->spread, sk_first_leaf(pairs->key[k])) ||
+                           sk_spread_has(&touch->spread, sk_second_leaf(pairs->key[k]));
                 if (!out && pairs->thickness[k] > 0) sk_pairs_copy_all(pairs, pairs, k);
             }
             sk_pairs_pad(pairs);

@@ -24,7 +24,8 @@ static sk_touch *touch_of(const sk_op *op) {
 
 static inline sk_vec3 sum_of(const sk_press *press, const sk_vec4 *x, size_t packed) {
     sk_vec3 sum = {0, 0, 0};
-    for (int c = 0; c < 4; c++) sum = sk_add(sum, sk_scale(press->weight[c], sk_xyz(sk_load(x, packed, press->slot[c]))));
+    for (int c = 0; c < 4; c++)
+        sum = sk_add(sum, sk_scale(press->weight[c], sk_xyz(sk_load(x, packed, press->slot[c]))));
     return sum;
 }
 
@@ -33,7 +34,8 @@ static inline void spread(const sk_press *press, sk_vec3 what, sk_vec4 *to, size
 }
 
 /* How it presses what is so far apart; false where all of it is pinned. */
-static bool set_press(const sk_touch *touch, sk_press *press, real resist, real distance, real thickness, real friction, real h) {
+static bool set_press(const sk_touch *touch, sk_press *press, real resist, real distance, real thickness, real friction,
+                      real h) {
     if (!(resist > 0)) return false;
     const real stiffness = 4, part = (real)0.25, nearest = (real)0.005; // the last: of the thickness
     const real near = sk_max(distance, nearest * thickness), missing = sk_max(0, thickness - distance);
@@ -63,7 +65,8 @@ static bool begin_press(sk_touch *touch, const sk_op *op, int sort, uint32_t ent
     }
     press->normal = (sk_vec3){pairs->normal[0][k], pairs->normal[1][k], pairs->normal[2][k]};
     press->surface = (sk_vec3){0, 0, 0};
-    return set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, thickness, sk_pair_friction(touch, v[0], v[2], (real)params->friction), h);
+    return set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, thickness,
+                     sk_pair_friction(touch, v[0], v[2], (real)params->friction), h);
 }
 
 /* The same of an edge or triangle that is near a collider, which is where it will be. */
@@ -78,7 +81,8 @@ static bool begin_face(const sk_touch *touch, const sk_face *face, real h, sk_pr
     press->normal = face->normal;
     press->surface = sk_scale(1 / h, face->way);
     const real distance = at - sk_dot(face->normal, sk_sub(face->at, face->way));
-    const bool presses = set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, face->thickness, face->friction, h);
+    const bool presses =
+        set_press(touch, press, sk_pair_resist(touch, v, press->weight), distance, face->thickness, face->friction, h);
     press->wanted += sk_dot(face->normal, face->at);
     return presses;
 }
@@ -119,7 +123,8 @@ void sk_press_begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
             touch->press.pair.count += begin_press(touch, op, sort, touch->near[sort].data[i], next);
         }
     for (size_t i = 0; i < touch->faces.near.count; i++)
-        touch->press.pair.count += begin_face(touch, &touch->faces.near.data[i], (real)op->dt, &touch->press.pair.data[touch->press.pair.count]);
+        touch->press.pair.count += begin_face(touch, &touch->faces.near.data[i], (real)op->dt,
+                                              &touch->press.pair.data[touch->press.pair.count]);
     number_corners(touch);
 }
 
@@ -165,8 +170,10 @@ static bool linearise(const sk_press *press, const sk_run *run, const sk_op *op,
     }
     if (!(push > 0) && !(rub > 0)) return false;
     const real more = push - rub;
-    column[0] = (sk_quad){more * n.x * n.x - rub * t.x * t.x + rub, more * n.x * n.y - rub * t.x * t.y, more * n.x * n.z - rub * t.x * t.z, 0};
-    column[1] = (sk_quad){column[0][1], more * n.y * n.y - rub * t.y * t.y + rub, more * n.y * n.z - rub * t.y * t.z, 0};
+    column[0] = (sk_quad){more * n.x * n.x - rub * t.x * t.x + rub, more * n.x * n.y - rub * t.x * t.y,
+                          more * n.x * n.z - rub * t.x * t.z, 0};
+    column[1] =
+        (sk_quad){column[0][1], more * n.y * n.y - rub * t.y * t.y + rub, more * n.y * n.z - rub * t.y * t.z, 0};
     column[2] = (sk_quad){column[0][2], column[1][2], more * n.z * n.z - rub * t.z * t.z + rub, 0};
     return true;
 }
@@ -183,7 +190,8 @@ void sk_press_diagonal(sk_run *run, const sk_op *op, size_t from, size_t end) {
         if (!linearise(press, run, op, column)) continue;
         for (int c = 0; c < 4; c++) {
             const real square = press->weight[c] * press->weight[c];
-            const sk_vec3 own = {column[0][0], column[1][1], column[2][2]}, off = {column[0][1], column[0][2], column[1][2]};
+            const sk_vec3 own = {column[0][0], column[1][1], column[2][2]},
+                          off = {column[0][1], column[0][2], column[1][2]};
             sk_add_at(run->vector[op->dst], op->packed, press->slot[c], sk_scale(square, own));
             sk_add_at(run->vector[op->source[1]], op->packed, press->slot[c], sk_scale(square, off));
             now->at[c] = press->at[c];
@@ -207,7 +215,8 @@ void sk_press_apply(sk_run *run, const sk_op *op, size_t from, size_t end) {
     for (size_t i = 0; i < touch->press.now.count; i++) {
         const sk_pressing *now = &touch->press.now.data[i];
         sk_quad apart = sk_quad_sum(p, now->at, now->weight);
-        sk_quad product = sk_quad_times(apart[0], now->column[0]) + sk_quad_times(apart[1], now->column[1]) + sk_quad_times(apart[2], now->column[2]);
+        sk_quad product = sk_quad_times(apart[0], now->column[0]) + sk_quad_times(apart[1], now->column[1]) +
+                          sk_quad_times(apart[2], now->column[2]);
         for (int c = 0; c < 4; c++) {
             sk_quad to = sk_quad_at(&sum[now->at[c]]) + sk_quad_times(now->weight[c], product);
             memcpy(&sum[now->at[c]], &to, sizeof to);

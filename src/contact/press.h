@@ -10,8 +10,8 @@ typedef struct sk_press {
     uint32_t slot[4], at[4]; /* of corners, and their numbers among all that press */
     real weight[4];
     sk_vec3 normal, surface; /* surface: the velocity of the collider that one of both is, m/s */
-    real wanted, stiffness; /* m, N/m */
-    real grip, rest;        /* the most that friction is, N; m/s: what is slower all but rests */
+    real wanted, stiffness;  /* m, N/m */
+    real grip, rest;         /* the most that friction is, N; m/s: what is slower all but rests */
 } sk_press;
 /* What the solve's matrix has of one that does press: a symmetric block, times the weights of both corners. */
 typedef struct sk_pressing {

@@ -24,7 +24,8 @@ static void push_apart(sk_touch *touch, const sk_push *push) {
     slip -= sk_quad_times(dot_of(slip, n), n);
     const real length = sk_sqrt(dot_of(slip, slip)), rub = push->friction * missing;
     const real share = length > rub ? rub / length : 1;
-    const sk_quad move = sk_quad_times(missing / resist, n) - sk_quad_times(push->friction > 0 ? share / resist : 0, slip);
+    const sk_quad move =
+        sk_quad_times(missing / resist, n) - sk_quad_times(push->friction > 0 ? share / resist : 0, slip);
     for (int c = 0; c < 4; c++) {
         sk_quad to = sk_quad_at(&q[v[c]]) + sk_quad_times(push->weight[c] * touch->inverse[v[c]], move);
         to[3] = 1; // moved
@@ -38,7 +39,8 @@ static void store(const sk_touch *touch, const sk_run *run, const sk_op *op, siz
     const size_t slot = touch->slot[v];
     const sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
     sk_store_at(run->vector[SK_X], op->packed, slot, now);
-    if (op->source[1] != SK_NONE) sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale((real)(1 / op->dt), sk_sub(now, old)));
+    if (op->source[1] != SK_NONE)
+        sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale((real)(1 / op->dt), sk_sub(now, old)));
 }
 
 void sk_touch_push_face(sk_touch *touch, const sk_run *run, const sk_op *op, const sk_face *face) {
@@ -107,7 +109,8 @@ static void push_near(sk_touch *touch, sk_run *run, const sk_op *op) {
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, VERTICES_AT_ONCE, load_some, &job);
     for (size_t sort = 0; sort < SK_PUSH_CLASSES; sort += SK_SLAB_CLASSES)
         for (int r = 0; r < SK_SLAB_ROUNDS; r++) {
-            const size_t begin = sort + sk_slab_round[r], end = sort + sk_slab_round[r + 1], count = touch->pushes.start[end] - touch->pushes.start[begin];
+            const size_t begin = sort + sk_slab_round[r], end = sort + sk_slab_round[r + 1],
+                         count = touch->pushes.start[end] - touch->pushes.start[begin];
             sk_parallel_pieces(touch->tasks, begin, end, count < PAIRS_AT_ONCE ? end - begin : 1, push_some, &job);
         }
     sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, VERTICES_AT_ONCE, store_some, &job);

@@ -15,11 +15,14 @@ typedef struct sk_push {
  * are taken at the same time have a vertex in common. Their order in all, by which bits are decided, knows nothing of threads. */
 enum {
     SK_MOST_SLABS = 16,
-    SK_SLAB_CLASSES = 2 * SK_MOST_SLABS,   /* slabs; boundaries between them, every second one and then the others; all else */
+    SK_SLAB_CLASSES =
+        2 * SK_MOST_SLABS, /* slabs; boundaries between them, every second one and then the others; all else */
     SK_PUSH_CLASSES = 2 * SK_SLAB_CLASSES, /* corners, and then edges */
     SK_SLAB_ROUNDS = 4
 };
-extern const size_t sk_slab_round[SK_SLAB_ROUNDS + 1]; /* the first class of each round, of a sort: those of a round are taken at the same time */
+extern const size_t
+    sk_slab_round[SK_SLAB_ROUNDS +
+                  1]; /* the first class of each round, of a sort: those of a round are taken at the same time */
 typedef struct sk_push_list {
     struct {
         sk_push *data;
@@ -32,7 +35,7 @@ typedef struct sk_push_list {
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } dealt; /* pairs by class */
+    } dealt;                           /* pairs by class */
     size_t start[SK_PUSH_CLASSES + 1]; /* of classes among those dealt */
     bool known;                        /* they are of this substep */
 } sk_push_list;

@@ -12,7 +12,8 @@ static sk_vec3 normal_at(const sk_touch *touch, uint32_t v) {
         for (uint32_t t = leaf->first_triangle; t < leaf->first_triangle + leaf->triangles; t++) {
             const uint32_t *corner = skin->triangle[t];
             if (corner[0] != v && corner[1] != v && corner[2] != v) continue;
-            const sk_vec3 a = sk_xyz(touch->p[corner[0]]), b = sk_xyz(touch->p[corner[1]]), c = sk_xyz(touch->p[corner[2]]);
+            const sk_vec3 a = sk_xyz(touch->p[corner[0]]), b = sk_xyz(touch->p[corner[1]]),
+                          c = sk_xyz(touch->p[corner[2]]);
             sum = sk_add(sum, sk_cross(sk_sub(b, a), sk_sub(c, a)));
         }
     }
@@ -50,7 +51,8 @@ sk_vec3 sk_touch_aside(const sk_touch *touch, uint32_t one, uint32_t other) {
 /* Who touches a solid goes out of it; or, where faces of two look about the same way, to where it is taken to be. Of two sheets that with
  * the lesser number is behind the other, as its own faces look. */
 static void choose_side(const sk_touch *touch, sk_pairs *pairs, int sort, size_t k) {
-    const real alike = (real)0.45; // a cube's corner and an edge of it are by 0.8, corners of cubes that stand on each other by 0.33
+    const real alike =
+        (real)0.45; // a cube's corner and an edge of it are by 0.8, corners of cubes that stand on each other by 0.33
     const int split = sort == SK_EDGES ? 2 : 1;
     const uint32_t first = pairs->corner[0][k], second = pairs->corner[split][k];
     const uint32_t a = touch->skin.piece[first], b = touch->skin.piece[second];
@@ -59,13 +61,15 @@ static void choose_side(const sk_touch *touch, sk_pairs *pairs, int sort, size_t
     sk_vec3 out_of[2] = {{0, 0, 0}, {0, 0, 0}};
     if (of_a || (!of_b && a < b)) out_of[0] = sk_scale(of_a < 0 ? -1 : 1, facing(touch, pairs, k, 0, split));
     if (of_b || (!of_a && a > b)) out_of[1] = sk_scale(of_b < 0 ? -1 : 1, facing(touch, pairs, k, split, 4 - split));
-    const sk_vec3 n = unit(sk_dot(out_of[0], out_of[1]) > alike ? sk_touch_aside(touch, first, second) : sk_sub(out_of[1], out_of[0]));
+    const sk_vec3 n = unit(sk_dot(out_of[0], out_of[1]) > alike ? sk_touch_aside(touch, first, second)
+                                                                : sk_sub(out_of[1], out_of[0]));
     if (!(sk_dot(n, n) > 0)) return;
     pairs->normal[0][k] = n.x, pairs->normal[1][k] = n.y, pairs->normal[2][k] = n.z;
 }
 
 void sk_touch_choose_side(sk_touch *touch, int sort, uint32_t entry) {
-    __atomic_store_n(&touch->tangle.forced, true, __ATOMIC_RELAXED); // it may be the wrong one all the same; threads choose for several
+    __atomic_store_n(&touch->tangle.forced, true,
+                     __ATOMIC_RELAXED); // it may be the wrong one all the same; threads choose for several
     choose_side(touch, entry & 1 ? &touch->late[sort] : &touch->kept[sort], sort, entry / 2);
 }
 

@@ -22,16 +22,16 @@ typedef struct sk_skin {
     size_t vertex_count, edge_count, triangle_count, leaf_count;
     uint32_t *particle; /* of vertices: the user's index */
     uint32_t *piece;    /* of vertices: what hangs together has one number, that of one of them */
-    int8_t *closed;     /* of pieces: its surface is closed, and its faces look out of it, 1, or into it, -1; or it is open, 0 */
+    int8_t *closed; /* of pieces: its surface is closed, and its faces look out of it, 1, or into it, -1; or it is open, 0 */
     sk_inner *inner;
     size_t inner_count;
-    sk_vec4 *built;     /* as they were built */
+    sk_vec4 *built; /* as they were built */
     uint32_t (*edge)[2], (*triangle)[3];
     sk_leaf *leaf;
     real *thickness, *friction; /* of vertices: those of their body; a thickness of 0: the rule's */
-    real thickest; /* m: of these thicknesses; 0: no body has its own, and both arrays mean nothing */
-    bool all_own;  /* and every body has */
-    real longest; /* m: of edges, as they were built */
+    real thickest;              /* m: of these thicknesses; 0: no body has its own, and both arrays mean nothing */
+    bool all_own;               /* and every body has */
+    real longest;               /* m: of edges, as they were built */
     real spacing; /* m: what lies between features of one surface that have no corner in common, as they were built */
     uint32_t *leaf_start, *leaf_of; /* those of vertex v: leaf_of[leaf_start[v]] to leaf_of[leaf_start[v + 1]] */
 } sk_skin;
@@ -39,8 +39,9 @@ typedef struct sk_skin {
 /* Bodies of which some pairs do not meet (make/ignored.c). */
 typedef struct sk_ignored {
     bool any;
-    uint32_t *of_leaf; /* of leaves: the number that their body has, and whoever is called the same by the text; 0: it is not named */
-    uint8_t *pair;     /* width x width: whether bodies of these numbers do not meet */
+    uint32_t *
+        of_leaf; /* of leaves: the number that their body has, and whoever is called the same by the text; 0: it is not named */
+    uint8_t *pair; /* width x width: whether bodies of these numbers do not meet */
     size_t width;
 } sk_ignored;
 

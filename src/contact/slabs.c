@@ -111,8 +111,12 @@ static void in_pieces(deal *d, sk_piece_body *body) {
 bool sk_touch_deal(sk_touch *touch, sk_allocator *allocator, real gain, real friction) {
     sk_push_list *pushes = &touch->pushes;
     if (pushes->known) return true;
-    deal d = {.touch = touch, .gain = gain, .friction = friction, .all = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count};
-    if (!SK_RESERVE(allocator, &pushes->pair, d.all) || !SK_RESERVE(allocator, &pushes->class_of, d.all) || !SK_RESERVE(allocator, &pushes->dealt, d.all))
+    deal d = {.touch = touch,
+              .gain = gain,
+              .friction = friction,
+              .all = touch->near[SK_CORNERS].count + touch->near[SK_EDGES].count};
+    if (!SK_RESERVE(allocator, &pushes->pair, d.all) || !SK_RESERVE(allocator, &pushes->class_of, d.all) ||
+        !SK_RESERVE(allocator, &pushes->dealt, d.all))
         return false;
     d.a_piece = d.all / MOST_PIECES + 1 > PAIRS_AT_ONCE ? d.all / MOST_PIECES + 1 : PAIRS_AT_ONCE;
     in_pieces(&d, set_some);

@@ -18,7 +18,8 @@ typedef struct sk_course_values {
     sk_vec3 common;
 } sk_course_values;
 /* Of places x of vertices; J is noted. With `course`, returns whether a panel is off its course. */
-typedef bool sk_measure_kernel(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course, sk_panel_bounds *out);
+typedef bool sk_measure_kernel(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course,
+                               sk_panel_bounds *out);
 SK_KERNELS(sk_measure_kernel, measure);
 /* The square of the longest way of all slots. */
 typedef real sk_longest_kernel(const sk_vec4 *before, const sk_vec4 *x, size_t packed, size_t slots);
@@ -33,8 +34,8 @@ typedef struct bounds {
 } bounds;
 
 /* J = [d1 d2] / [u1 u2], where d are differences of corners and u those on the plane. */
-SK_INLINE void add_triangle(bounds *b, sk_wide3 d1, sk_wide3 d2, real (*inverse)[SK_PANEL_LANES], real (*gradient)[SK_PANEL_LANES],
-                            size_t l) {
+SK_INLINE void add_triangle(bounds *b, sk_wide3 d1, sk_wide3 d2, real (*inverse)[SK_PANEL_LANES],
+                            real (*gradient)[SK_PANEL_LANES], size_t l) {
     const sk_wide i0 = *sk_row(inverse[0] + l), i1 = *sk_row(inverse[1] + l);
     const sk_wide i2 = *sk_row(inverse[2] + l), i3 = *sk_row(inverse[3] + l);
     const sk_wide j[6] = {d1.x * i0 + d2.x * i1, d1.y * i0 + d2.y * i1, d1.z * i0 + d2.z * i1,
@@ -51,7 +52,8 @@ SK_INLINE void add_triangle(bounds *b, sk_wide3 d1, sk_wide3 d2, real (*inverse)
 }
 
 /* Lanes that are out of bounds along an axis. */
-SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l, int k, const sk_course_values *course) {
+SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l, int k,
+                              const sk_course_values *course) {
     const sk_tree_block *c = &panels->course;
     const real common = k == 0 ? course->common.x : k == 1 ? course->common.y : course->common.z;
     const sk_wide share = sk_splat(course->share), off = sk_splat(course->off), way = sk_splat(common);
@@ -66,7 +68,8 @@ SK_INLINE uint32_t off_course(const sk_panels *panels, const bounds *b, size_t l
     return sk_more_bits(least, first) | sk_more_bits(last, most);
 }
 
-bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course, sk_panel_bounds *out) {
+bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group, const sk_course_values *course,
+                        sk_panel_bounds *out) {
     const sk_wide far = sk_splat(SK_REAL_MAX);
     sk_panels *panels = &spread->sixteen[group];
     uint32_t off = 0;
@@ -89,7 +92,8 @@ bool SK_KERNEL(measure)(const sk_vec4 *x, const sk_spread *spread, size_t group,
                 add_triangle(&b, along, other, spread->inverse[r][t], spread->gradient[r][t], l);
             }
         }
-        for (int k = 0; k < 6; k++) *sk_row_to(out->least[k] + l) = b.least[k], *sk_row_to(out->most[k] + l) = b.most[k];
+        for (int k = 0; k < 6; k++)
+            *sk_row_to(out->least[k] + l) = b.least[k], *sk_row_to(out->most[k] + l) = b.most[k];
         for (int k = 0; k < 3; k++) {
             if (course) off |= off_course(panels, &b, l, k, course);
             *sk_row_to(panels->low_before[k] + l) = *sk_row(panels->low[k] + l);
@@ -149,7 +153,8 @@ static void measure_some(void *data, int thread, size_t begin, size_t end) {
     sk_spread *spread = &touch->spread;
     for (size_t g = begin; g < end; g++) {
         sk_panel_bounds m;
-        if (measure_kernel[touch->isa](job->x, spread, g, job->course, &m)) __atomic_store_n(&spread->off_course, true, __ATOMIC_RELAXED);
+        if (measure_kernel[touch->isa](job->x, spread, g, job->course, &m))
+            __atomic_store_n(&spread->off_course, true, __ATOMIC_RELAXED);
         for (size_t l = 0, p = g * SK_PANEL_LANES; l < SK_PANEL_LANES && p < spread->count; l++, p++)
             for (int k = 0; k < 6; k++) spread->least[p][k] = m.least[k][l], spread->least[p][6 + k] = -m.most[k][l];
     }
@@ -159,7 +164,8 @@ static void measure_some(void *data, int thread, size_t begin, size_t end) {
 static void measure(sk_touch *touch, const sk_vec4 *x, bool ways) {
     const sk_spread *spread = &touch->spread;
     const bool held = spread->out_count < spread->count; // somebody may be, and goes the common way
-    const sk_course_values course = {(real)(spread->age + 1) / SK_PANEL_AHEAD, off_course_of(touch), held, touch->common};
+    const sk_course_values course = {(real)(spread->age + 1) / SK_PANEL_AHEAD, off_course_of(touch), held,
+                                     touch->common};
     measuring job = {touch, x, ways && spread->age < SK_PANEL_AHEAD ? &course : NULL};
     const size_t groups = (spread->count + SK_PANEL_LANES - 1) / SK_PANEL_LANES;
     sk_parallel_pieces(touch->tasks, 0, groups, GROUPS_AT_ONCE, measure_some, &job);
@@ -191,7 +197,8 @@ static real keeps_of(const sk_spread *spread, size_t b, real *change) {
         *change = sk_max(*change, change_of(spread, spread->around.number[i]));
     }
     real a[6], half[6];
-    for (int k = 0; k < 6; k++) a[k] = (real)0.5 * (least[k] - least[6 + k]), half[k] = (real)-0.5 * (least[k] + least[6 + k]);
+    for (int k = 0; k < 6; k++)
+        a[k] = (real)0.5 * (least[k] - least[6 + k]), half[k] = (real)-0.5 * (least[k] + least[6 + k]);
     real uu = 0, vv = 0, uv = 0, off_u = 0, off_v = 0, across = 0;
     for (int k = 0; k < 3; k++) {
         real u = sk_abs(a[k]), v = sk_abs(a[3 + k]);
@@ -209,7 +216,8 @@ static bool lies_spread(sk_touch *touch, size_t b, bool ways) {
     if (!block->whole) return false;
     // as pairs are no thicker than nine tenths of what they were apart
     const real thickness = sk_min(touch->thickness, (real)0.9 * block->apart);
-    const real need = (SK_NEAR_THICKNESSES + (real)0.01) * thickness + rounding_of(spread, spread->members.number[spread->members.start[b]]);
+    const real need = (SK_NEAR_THICKNESSES + (real)0.01) * thickness +
+                      rounding_of(spread, spread->members.number[spread->members.start[b]]);
     real change, keeps = keeps_of(spread, b, &change), kept = block->keeps, off = block->steep * spread->gone;
     block->keeps = keeps;
     const real least = block->spread ? need : need + room * (block->apart - need);
@@ -236,7 +244,8 @@ static void judge_some(void *data, int thread, size_t begin, size_t end) {
 
 static bool are_spread(const sk_spread *spread, size_t p) {
     bool all = spread->blocks.start[p] < spread->blocks.start[p + 1];
-    for (uint32_t i = spread->blocks.start[p]; i < spread->blocks.start[p + 1]; i++) all &= spread->block[spread->blocks.number[i]].spread;
+    for (uint32_t i = spread->blocks.start[p]; i < spread->blocks.start[p + 1]; i++)
+        all &= spread->block[spread->blocks.number[i]].spread;
     return all;
 }
 
@@ -257,7 +266,8 @@ static void bound_box(sk_box *box) {
 /* Boxes of panels: of their ways, and of who is held back and goes what all go together; or where they are. */
 static void box_panels(sk_touch *touch, bool ways) {
     sk_spread *spread = &touch->spread;
-    const real common[3] = {touch->common.x, touch->common.y, touch->common.z}, gone = spread->gone; // (since they were before)
+    const real common[3] = {touch->common.x, touch->common.y, touch->common.z},
+               gone = spread->gone; // (since they were before)
     const bool held = spread->out_count < spread->count;
     for (size_t p = 0; p < spread->count; p++) {
         const sk_panels *panels = &spread->sixteen[p / SK_PANEL_LANES];
@@ -317,10 +327,12 @@ static void part(sk_touch *touch, real near) {
         const size_t first = a * SK_TREE_WIDTH, left = spread->count - first;
         const uint32_t lanes = left < SK_TREE_WIDTH ? (1u << left) - 1 : (1u << SK_TREE_WIDTH) - 1;
         sk_box all = spread->wide[first];
-        for (size_t p = first + 1; p < first + SK_TREE_WIDTH && p < spread->count; p++) sk_box_widen(&all, &spread->wide[p]);
+        for (size_t p = first + 1; p < first + SK_TREE_WIDTH && p < spread->count; p++)
+            sk_box_widen(&all, &spread->wide[p]);
         size_t blocks = sk_tree_blocks[touch->isa](&spread->tree, &all, a, spread->met);
         for (size_t k = 0; k < blocks; k++) {
-            size_t b = spread->met[k], count = sk_tree_hits[touch->isa](&spread->tree, a, b, lanes, spread->wide, true, hit);
+            size_t b = spread->met[k],
+                   count = sk_tree_hits[touch->isa](&spread->tree, a, b, lanes, spread->wide, true, hit);
             for (size_t i = 0; i < count; i++) {
                 size_t p = first + (hit[i] >> SK_TREE_SHIFT), other = b * SK_TREE_WIDTH + hit[i] % SK_TREE_WIDTH;
                 if (p == other || !(spread->out[p] | spread->out[other]) || is_beside(spread, p, other)) continue;
@@ -387,7 +399,8 @@ static bool turn(sk_touch *touch) {
         any |= in;
     }
     memcpy(spread->was_out, spread->out, spread->count);
-    if (any && none_had) { // courses begin here, and boxes do not lead far ahead, although for long nobody has left a course
+    if (any &&
+        none_had) { // courses begin here, and boxes do not lead far ahead, although for long nobody has left a course
         touch->now = 0, touch->until = 10;
         touch->lost_since = touch->skin.vertex_count;
     }
@@ -448,7 +461,8 @@ static void look_ahead(sk_touch *touch, real way) {
     const real margin = (real)0.5 * touch->thickness, few = 16; // substeps
     if (!(few * way < margin)) return;
     real least = (real)0.5 * margin;
-    for (size_t b = 0; b < spread->block_count && least > way; b++) least = sk_min(least, room_of(touch, &spread->block[b]));
+    for (size_t b = 0; b < spread->block_count && least > way; b++)
+        least = sk_min(least, room_of(touch, &spread->block[b]));
     if (!(least > way)) return;
     box_panels(touch, true);
     part(touch, near_of(touch) + margin);
@@ -469,7 +483,8 @@ static void set_courses(sk_touch *touch) {
             real low = panels->low[k][l], high = panels->high[k][l];
             box->low[0][k] = low, box->low[1][k] = low + SK_PANEL_AHEAD * (low - panels->low_before[k][l]);
             box->high[0][k] = high, box->high[1][k] = high + SK_PANEL_AHEAD * (high - panels->high_before[k][l]);
-            for (int end = 0; end < 2; end++) panels->course.low[end][k][l] = box->low[end][k], panels->course.high[end][k][l] = box->high[end][k];
+            for (int end = 0; end < 2; end++)
+                panels->course.low[end][k][l] = box->low[end][k], panels->course.high[end][k][l] = box->high[end][k];
         }
         bound_box(box);
     }
@@ -520,7 +535,8 @@ void sk_spread_disturb(sk_touch *touch, size_t v) {
         const uint32_t p = spread->of_leaf[skin->leaf_of[k]];
         for (uint32_t i = spread->through.start[p]; i < spread->through.start[p + 1]; i++) {
             const uint32_t b = spread->through.number[i];
-            for (uint32_t j = spread->members.start[b]; j < spread->members.start[b + 1]; j++) bring_in(spread, spread->members.number[j]);
+            for (uint32_t j = spread->members.start[b]; j < spread->members.start[b + 1]; j++)
+                bring_in(spread, spread->members.number[j]);
         }
     }
 }

@@ -52,7 +52,8 @@ typedef struct sk_spread {
     size_t block_count;
     sk_panel_block *block;
     sk_lists blocks, beside; /* of panels: in which blocks they are, and who else is in these, they themselves too */
-    sk_lists members, around, through; /* of blocks: panels in them, and those through which ways between these may lead; and
+    sk_lists members, around,
+        through;         /* of blocks: panels in them, and those through which ways between these may lead; and
                                         * of panels: the blocks whose ways may lead through them */
     uint8_t *out;        /* panels that are; */
     uint8_t *vertex_out; /* vertices that need no course: their panels are, and those beside these; */
@@ -62,23 +63,24 @@ typedef struct sk_spread {
      * each), what makes J of their differences, and J as it was last, of both triangles */
     uint32_t *row_start, (*corner)[4][SK_PANEL_LANES];
     real (*inverse)[2][4][SK_PANEL_LANES], (*gradient)[2][6][SK_PANEL_LANES];
-    sk_tree tree;        /* of the boxes of panels on their ways; */
-    sk_box *box, *wide;  /* these, and wider ones; */
-    int age;             /* substeps since panels got courses: on these all are apart as they must be, */
-    int wait;            /* or until that is tried again */
-    bool off_course;     /* somebody is not */
-    uint32_t *met;       /* and which of the tree's blocks one may meet */
-    uint8_t *was_out;    /* panels that were, when it was last said who is lost; */
-    uint8_t *turned;     /* and those that have gone out or come in, which boxes of leaves do not know yet */
-    uint8_t *mark;       /* of vertices: for a moment */
-    real thickness;      /* that panels were looked at for */
-    real holds, gone;    /* m: all that are out are while nobody has gone farther since; and how far they have gone at most */
-    int rest;            /* frames until others may go out again */
-    bool stale;          /* somebody was held back since */
-    bool went_out;       /* panels have, and pairs of theirs may be kept */
-    bool came_in;        /* panels have, and it has not been said yet who is lost */
-    bool never;          /* nobody goes out: an implicit solve asks several times what becomes of a substep */
-    bool eager;          /* few suffice to be out: tests ask for it */
+    sk_tree tree;       /* of the boxes of panels on their ways; */
+    sk_box *box, *wide; /* these, and wider ones; */
+    int age;            /* substeps since panels got courses: on these all are apart as they must be, */
+    int wait;           /* or until that is tried again */
+    bool off_course;    /* somebody is not */
+    uint32_t *met;      /* and which of the tree's blocks one may meet */
+    uint8_t *was_out;   /* panels that were, when it was last said who is lost; */
+    uint8_t *turned;    /* and those that have gone out or come in, which boxes of leaves do not know yet */
+    uint8_t *mark;      /* of vertices: for a moment */
+    real thickness;     /* that panels were looked at for */
+    real holds,
+        gone;      /* m: all that are out are while nobody has gone farther since; and how far they have gone at most */
+    int rest;      /* frames until others may go out again */
+    bool stale;    /* somebody was held back since */
+    bool went_out; /* panels have, and pairs of theirs may be kept */
+    bool came_in;  /* panels have, and it has not been said yet who is lost */
+    bool never;    /* nobody goes out: an implicit solve asks several times what becomes of a substep */
+    bool eager;    /* few suffice to be out: tests ask for it */
 } sk_spread;
 
 struct sk_touch;

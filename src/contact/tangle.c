@@ -43,13 +43,15 @@ static sk_vec3 side_of(const sk_vec4 *x, uint32_t from, uint32_t to) {
 
 /* Of an edge of a solid that goes through another one's triangle the end behind this is inside, whatever is larger. */
 static inner_end find_inside(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
-    const sk_vec3 along = side_of(touch->p, edge[0], edge[1]), n = sk_cross(side_of(touch->p, t[0], t[1]), side_of(touch->p, t[0], t[2]));
+    const sk_vec3 along = side_of(touch->p, edge[0], edge[1]),
+                  n = sk_cross(side_of(touch->p, t[0], t[1]), side_of(touch->p, t[0], t[2]));
     return sk_dot(along, n) * (real)touch->skin.closed[touch->skin.piece[t[0]]] > 0 ? FIRST_END : SECOND_END;
 }
 
 static inner_end find_inner(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
     const sk_tangle *tangle = &touch->tangle;
-    if (touch->skin.piece[edge[0]] != touch->skin.piece[t[0]] && is_solid(&touch->skin, edge[0]) && is_solid(&touch->skin, t[0]))
+    if (touch->skin.piece[edge[0]] != touch->skin.piece[t[0]] && is_solid(&touch->skin, edge[0]) &&
+        is_solid(&touch->skin, t[0]))
         return find_inside(touch, edge, t);
     if (tangle->part[edge[0]] == tangle->part[edge[1]]) return UNKNOWN;
     const bool second = second_is_inner(tangle, edge);
@@ -150,14 +152,17 @@ static void add_way(sk_whole *whole, sk_vec3 way, real share) {
 
 static void add_place(sk_whole *whole, sk_vec4 built) {
     whole->low = (sk_vec3){sk_min(whole->low.x, built.x), sk_min(whole->low.y, built.y), sk_min(whole->low.z, built.z)};
-    whole->high = (sk_vec3){sk_max(whole->high.x, built.x), sk_max(whole->high.y, built.y), sk_max(whole->high.z, built.z)};
+    whole->high =
+        (sk_vec3){sk_max(whole->high.x, built.x), sk_max(whole->high.y, built.y), sk_max(whole->high.z, built.z)};
 }
 
 /* Of an edge of a solid that a sheet cuts in two: the solid goes to the side of its larger part, and what of the sheet is inside it to
  * the other. (By its own crossings, it would go out on all sides of the solid at once.) */
 static void add_cut_solid(sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
     sk_tangle *tangle = &touch->tangle;
-    if (!is_solid(&touch->skin, edge[0]) || is_solid(&touch->skin, t[0]) || tangle->part[edge[0]] == tangle->part[edge[1]]) return;
+    if (!is_solid(&touch->skin, edge[0]) || is_solid(&touch->skin, t[0]) ||
+        tangle->part[edge[0]] == tangle->part[edge[1]])
+        return;
     const sk_vec3 way = way_through(touch->p, edge, second_is_inner(tangle, edge), t);
     add_way(piece_of(touch, edge[0]), way, half);
     uint32_t largest = 0;
@@ -168,8 +173,8 @@ static void add_cut_solid(sk_touch *touch, const uint32_t edge[2], const uint32_
 
 /* Of two sheets: a part that is divided off goes back, and takes all around it along; where nothing is divided, the border of one goes
  * along the line of the crossing, so that it gets shorter. */
-static void add_sheets(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3], inner_end inner,
-                       sk_vec3 way) {
+static void add_sheets(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3],
+                       inner_end inner, sk_vec3 way) {
     if (inner == UNKNOWN && faces == 2) return;
     if (inner == UNKNOWN) way = along_line(touch->p, edge, third[0], t);
     for (int c = 0; c < 2; c++) add_place(piece_of(touch, edge[0]), touch->skin.built[edge[c]]);
@@ -181,7 +186,8 @@ static void add_sheets(sk_touch *touch, const uint32_t edge[2], const uint32_t t
 /* Whether an edge only goes through a triangle since its solid is taken to be a little aside (sides.c): one of its ends is in the triangle's plane. */
 static bool is_by_nothing(const sk_touch *touch, const uint32_t edge[2], const uint32_t t[3]) {
     const sk_vec3 n = normal_of(touch->p, t);
-    const real first = sk_dot(n, side_of(touch->p, t[0], edge[0])), second = sk_dot(n, side_of(touch->p, t[0], edge[1]));
+    const real first = sk_dot(n, side_of(touch->p, t[0], edge[0])),
+               second = sk_dot(n, side_of(touch->p, t[0], edge[1]));
     return sk_min(sk_abs(first), sk_abs(second)) <= 2 * sk_length(sk_touch_aside(touch, edge[0], t[0]));
 }
 
@@ -190,12 +196,13 @@ static void note_crossed(sk_touch *touch, uint32_t v, uint32_t other, const uint
     sk_whole *whole = piece_of(touch, v);
     whole->after += touch->skin.piece[other] < touch->skin.piece[v] ? 1 : -1;
     whole->by_nothing += by_nothing;
-    whole->crossed = sk_add(whole->crossed, sk_scale(half, sk_add(sk_xyz(touch->p[edge[0]]), sk_xyz(touch->p[edge[1]]))));
+    whole->crossed =
+        sk_add(whole->crossed, sk_scale(half, sk_add(sk_xyz(touch->p[edge[0]]), sk_xyz(touch->p[edge[1]]))));
 }
 
 /* What a crossing says of where pieces are to go as wholes. */
-static void add_wholes(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3], inner_end inner,
-                       sk_vec3 way, real share) {
+static void add_wholes(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3],
+                       inner_end inner, sk_vec3 way, real share) {
     const sk_skin *skin = &touch->skin;
     if (skin->piece[edge[0]] == skin->piece[t[0]] || is_solid(skin, edge[0]) != is_solid(skin, t[0])) return;
     if (!is_solid(skin, edge[0])) {
@@ -210,13 +217,14 @@ static void add_wholes(sk_touch *touch, const uint32_t edge[2], const uint32_t t
 }
 
 /* Leads both features of a crossing apart by twice a step. */
-static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces, const uint32_t t[3],
-                          real step) {
+static void lead_crossing(sk_touch *touch, const uint32_t edge[2], const uint32_t third[2], int faces,
+                          const uint32_t t[3], real step) {
     sk_tangle *tangle = &touch->tangle;
     add_cut_solid(touch, edge, t);
     inner_end inner = find_inner(touch, edge, t);
     if (inner == THEIRS) return;
-    sk_vec3 way = inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge, (int)inner, t);
+    sk_vec3 way =
+        inner == UNKNOWN ? way_to_shorten(touch->p, edge, third, faces, t) : way_through(touch->p, edge, (int)inner, t);
     const real share = share_of(touch->p, edge, t);
     add_wholes(touch, edge, third, faces, t, inner, way, share);
     way = sk_scale(2 * step, way);
@@ -278,7 +286,8 @@ bool sk_tangle_reserve(sk_touch *touch, sk_allocator *allocator) {
     tangle->whole = sk_allocate(allocator, 2 * vertices * sizeof *tangle->whole);
     tangle->group = sk_allocate(allocator, vertices * sizeof *tangle->group);
     tangle->marked = sk_allocate(allocator, vertices);
-    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->whole && tangle->group && tangle->marked)
+    if (tangle->of && tangle->fine && tangle->part && tangle->size && tangle->lead && tangle->whole && tangle->group &&
+        tangle->marked)
         tangle->cut = sk_allocate(allocator, touch->skin.edge_count + 1);
     if (!tangle->cut) sk_tangle_release(tangle, allocator);
     return tangle->cut != NULL;
@@ -317,7 +326,8 @@ static void find_groups(sk_touch *touch) {
     for (uint32_t i = 0; i < skin->vertex_count; i++) tangle->group[i] = i;
     for (size_t i = 0; i < tangle->crossing.count; i++) {
         const sk_crossing *crossing = &tangle->crossing.data[i];
-        sk_union_join(tangle->group, skin->piece[skin->edge[crossing->edge][0]], skin->piece[skin->triangle[crossing->triangle][0]]);
+        sk_union_join(tangle->group, skin->piece[skin->edge[crossing->edge][0]],
+                      skin->piece[skin->triangle[crossing->triangle][0]]);
     }
     for (size_t i = 0; i < skin->inner_count; i++) tangle->whole[skin->inner[i].piece].filled = true;
     for (uint32_t v = 0; v < skin->vertex_count; v++) {
@@ -349,7 +359,8 @@ static void find_stuck(sk_touch *touch) {
         const bool hollow = touch->tangle.whole[sk_union_root(touch->tangle.group, i)].hollow;
         whole->stuck = !hollow && sk_tangle_way_out(touch, i, &whole->way);
         if (whole->stuck || sk_length(whole->way) > agreed * count) continue;
-        const sk_vec3 away = sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
+        const sk_vec3 away =
+            sk_sub(sk_scale(1 / (real)whole->vertices, whole->middle), sk_scale(1 / count, whole->crossed));
         whole->stuck = true;
         whole->way = sk_length(away) > (real)0.1 * touch->thickness ? away : (sk_vec3){whole->after, 0, 0};
     }
@@ -390,10 +401,12 @@ static void lead_wholes(sk_touch *touch, const sk_run *run, const sk_op *op, rea
     for (uint32_t i = 0; i < 2 * skin->vertex_count; i++) {
         sk_whole *whole = &tangle->whole[i];
         if (!whole->count) continue;
-        const bool agreed = i < skin->vertex_count && !skin->closed[i]; // or what contradicts itself makes sheets tremble
+        const bool agreed =
+            i < skin->vertex_count && !skin->closed[i]; // or what contradicts itself makes sheets tremble
         const sk_whole *group = agreed ? &tangle->whole[sk_union_root(tangle->group, i)] : NULL;
         const real count = (real)whole->count, sooner = group ? find_sooner(group, step, op->dt) : 1;
-        whole->way = sk_scale(2 * whole->share / count * sooner * step, agreed ? sk_scale(1 / count, whole->way) : unit(whole->way));
+        whole->way = sk_scale(2 * whole->share / count * sooner * step,
+                              agreed ? sk_scale(1 / count, whole->way) : unit(whole->way));
     }
     for (uint32_t v = 0; v < skin->vertex_count; v++) {
         const sk_whole *piece = piece_of(touch, v), *part = part_of(touch, v);
@@ -414,11 +427,13 @@ static void lead_all(sk_touch *touch, const sk_run *run, const sk_op *op, real s
     memset(tangle->fine, 0, skin->vertex_count * sizeof *tangle->fine);
     memset(tangle->lead, 0, skin->vertex_count * sizeof *tangle->lead);
     const sk_vec3 far = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX};
-    for (size_t i = 0; i < 2 * skin->vertex_count; i++) tangle->whole[i] = (sk_whole){.low = far, .high = sk_scale(-1, far)};
+    for (size_t i = 0; i < 2 * skin->vertex_count; i++)
+        tangle->whole[i] = (sk_whole){.low = far, .high = sk_scale(-1, far)};
     find_parts(touch);
     bool coarse = false;
     for (size_t i = 0; i < tangle->crossing.count; i++) {
-        const uint32_t *edge = skin->edge[tangle->crossing.data[i].edge], *t = skin->triangle[tangle->crossing.data[i].triangle];
+        const uint32_t *edge = skin->edge[tangle->crossing.data[i].edge],
+                       *t = skin->triangle[tangle->crossing.data[i].triangle];
         uint32_t third[2];
         int faces = find_faces(skin, edge, third);
         if (!faces) continue;
@@ -458,7 +473,8 @@ static void mark_around(sk_touch *touch) {
     sk_tangle *tangle = &touch->tangle;
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         const sk_crossings_at *of = &tangle->of[v], *fine = &tangle->fine[v];
-        tangle->marked[v] = (of->edges | of->triangles | fine->edges | fine->triangles) != 0 || piece_of(touch, (uint32_t)v)->stuck;
+        tangle->marked[v] =
+            (of->edges | of->triangles | fine->edges | fine->triangles) != 0 || piece_of(touch, (uint32_t)v)->stuck;
     }
 }
 
@@ -492,7 +508,8 @@ void sk_tangle_lead(const sk_touch *touch, sk_vec4 *x, sk_vec4 *before, size_t p
         sk_add_at(x, packed, touch->slot[v], way);
         if (before) sk_add_at(before, packed, touch->slot[v], way);
     }
-    for (size_t i = 0; i < touch->skin.inner_count && tangle->any; i++) { // or springs would bring them along, and speed with it
+    for (size_t i = 0; i < touch->skin.inner_count && tangle->any;
+         i++) { // or springs would bring them along, and speed with it
         const sk_whole *whole = &tangle->whole[touch->skin.inner[i].piece];
         const uint32_t slot = touch->inner_slot[i];
         if (!whole->count || !(sk_load(x, packed, slot).w > 0)) continue;
@@ -518,8 +535,8 @@ bool sk_tangle_leave(sk_touch *touch, sk_allocator *allocator, const sk_vec4 *x,
 }
 
 void sk_tangle_release(sk_tangle *tangle, sk_allocator *allocator) {
-    void *arrays[] = {tangle->left, tangle->of, tangle->fine, tangle->part, tangle->size, tangle->lead, tangle->whole, tangle->group,
-                      tangle->marked, tangle->cut, tangle->crossing.data};
+    void *arrays[] = {tangle->left,  tangle->of,    tangle->fine,   tangle->part, tangle->size,         tangle->lead,
+                      tangle->whole, tangle->group, tangle->marked, tangle->cut,  tangle->crossing.data};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     *tangle = (sk_tangle){.any = false};
 }

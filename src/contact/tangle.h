@@ -52,34 +52,34 @@ typedef struct sk_crossings_at {
 
 /* What is led as a whole: a solid, a sheet around where it is gone through, or the part of a sheet that is in a solid. */
 typedef struct sk_whole {
-    sk_vec3 way;       /* first the sum of what crossings say, then where it is led, m */
-    real share;        /* the sum of how much of the way is its own, */
-    uint32_t count;    /* of so many crossings */
-    bool stuck;        /* a solid whose crossings lead to all sides: contact with others that go through something leaves it alone */
-    uint32_t vertices; /* of a solid; */
-    bool filled;       /* there are particles in it, and so it keeps its shape; */
-    sk_vec3 middle;    /* the sum of their places, m, */
-    sk_vec3 crossed;   /* and of those where it is gone through; */
+    sk_vec3 way;    /* first the sum of what crossings say, then where it is led, m */
+    real share;     /* the sum of how much of the way is its own, */
+    uint32_t count; /* of so many crossings */
+    bool stuck; /* a solid whose crossings lead to all sides: contact with others that go through something leaves it alone */
+    uint32_t vertices;   /* of a solid; */
+    bool filled;         /* there are particles in it, and so it keeps its shape; */
+    sk_vec3 middle;      /* the sum of their places, m, */
+    sk_vec3 crossed;     /* and of those where it is gone through; */
     uint32_t by_nothing; /* of crossings: how many there are since it has faces in one plane with another one; */
-    real after;        /* of crossings: how many more are with solids that come before it than after it */
-    bool pinned;       /* a sheet that is pinned goes around its crossings alone: */
-    sk_vec3 low, high; /* between these, as it was built */
+    real after;          /* of crossings: how many more are with solids that come before it than after it */
+    bool pinned;         /* a sheet that is pinned goes around its crossings alone: */
+    sk_vec3 low, high;   /* between these, as it was built */
     /* of a group's first piece */
-    bool hollow;           /* not all that go through each other in it are filled */
-    bool hangs;            /* a sheet of it is pinned */
+    bool hollow;                /* not all that go through each other in it are filled */
+    bool hangs;                 /* a sheet of it is pinned */
     double mass_of_all, motion; /* kg, and twice its kinetic energy, J */
     /* of solids, or of a group's first piece (impact.c) */
-    bool held;             /* somebody of it is pinned */
-    double momentum[3];    /* kg m/s; of a group: what it has lost */
-    double mass;           /* kg; of a group: of who shares that */
-    double gained[3];      /* m/s: what all of a solid gain, since it is led out of another one */
+    bool held;          /* somebody of it is pinned */
+    double momentum[3]; /* kg m/s; of a group: what it has lost */
+    double mass;        /* kg; of a group: of who shares that */
+    double gained[3];   /* m/s: what all of a solid gain, since it is led out of another one */
 } sk_whole;
 
 typedef struct sk_tangle {
-    bool any;      /* something is led apart in this substep */
-    bool same;     /* all are where the last bound has left them */
-    bool clean;    /* no edge went through a triangle when the last bound ended */
-    bool forced;   /* in this substep, what is pinned or had no gap may have gone through something; written by any thread */
+    bool any;   /* something is led apart in this substep */
+    bool same;  /* all are where the last bound has left them */
+    bool clean; /* no edge went through a triangle when the last bound ended */
+    bool forced; /* in this substep, what is pinned or had no gap may have gone through something; written by any thread */
     bool torn;     /* something has blown up, and met nobody since the last search for all; the same */
     sk_vec4 *left; /* by slot: where all were when the last bound ended */
     size_t left_count, left_capacity;

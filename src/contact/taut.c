@@ -40,12 +40,14 @@ static uint32_t hold_edge(sk_touch *touch, uint32_t a, uint32_t b) {
         a = b, b = c;
     }
     if (!(touch->inverse[b] > 0)) return UINT32_MAX;
-    const sk_vec3 way = sk_xyz(touch->way[b]), stopped = sk_add(sk_xyz(touch->stand[a]), sk_scale(share[a], sk_xyz(touch->way[a])));
+    const sk_vec3 way = sk_xyz(touch->way[b]),
+                  stopped = sk_add(sk_xyz(touch->stand[a]), sk_scale(share[a], sk_xyz(touch->way[a])));
     const sk_vec3 from = sk_sub(sk_xyz(touch->stand[b]), stopped), to = sk_add(from, sk_scale(share[b], way));
     const real most = square_of_most(touch, a, b);
     if (!(sk_dot(to, to) > known * most)) return UINT32_MAX;
     // |from + s way|^2 = most: its greater root
-    const real square = sk_dot(way, way), half = sk_dot(way, from), inside = half * half - square * (sk_dot(from, from) - most);
+    const real square = sk_dot(way, way), half = sk_dot(way, from),
+               inside = half * half - square * (sk_dot(from, from) - most);
     const real root = inside > 0 && square > 0 ? (sk_sqrt(inside) - half) / square : share[a];
     const real held = sk_max(root, share[a]);
     if (!(held < share[b])) return UINT32_MAX;

@@ -15,7 +15,8 @@ typedef struct built_pairs {
 
 static void point_at_own(built_pairs *some) {
     sk_pairs *p = &some->pairs;
-    real **reals[] = {&p->distance, &p->thickness, &p->normal[0], &p->normal[1], &p->normal[2], &p->share[0], &p->share[1]};
+    real **reals[] = {&p->distance,  &p->thickness, &p->normal[0], &p->normal[1],
+                      &p->normal[2], &p->share[0],  &p->share[1]};
     for (size_t i = 0; i < sizeof reals / sizeof *reals; i++) *reals[i] = some->reals[i];
     for (int c = 0; c < 4; c++) p->corner[c] = some->corner[c];
     p->closes = some->bytes[0], p->settled = some->bytes[1];

@@ -32,7 +32,8 @@ static real room_of_leaf(const sk_touch *touch, size_t i, const sk_vec4 *p) {
     const sk_leaf *leaf = &skin->leaf[i];
     if (!leaf->triangles) return room_of(touch, p, skin->edge[leaf->first_edge], 2);
     real room = SK_REAL_MAX;
-    for (size_t k = 0; k < leaf->triangles; k++) room = sk_min(room, room_of(touch, p, skin->triangle[leaf->first_triangle + k], 3));
+    for (size_t k = 0; k < leaf->triangles; k++)
+        room = sk_min(room, room_of(touch, p, skin->triangle[leaf->first_triangle + k], 3));
     return room;
 }
 

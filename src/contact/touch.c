@@ -10,11 +10,13 @@ static const skein_field fields[] = {
     SK_REAL(sk_contact_params, friction, "friction", "", 0.3, 0, 10, "coefficient of friction between them"),
     SK_REAL(sk_contact_params, recovery, "recovery", "m/s", 0.4, 0, 1e6,
             "how fast surfaces that have gone through each other are led apart; 0: they stay so"),
-    SK_INT(sk_contact_params, more_substeps, "more_substeps", "", 10, 1, 100,
-           "xpbd and pbd, where bodies near others or colliders by over half a thickness a substep, or pins are led past what hangs from them by over two: "
-           "up to so many times as many; 1: never"),
-    SK_TEXT(sk_contact_params, ignore, "ignore", "",
-            "pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
+    SK_INT(
+        sk_contact_params, more_substeps, "more_substeps", "", 10, 1, 100,
+        "xpbd and pbd, where bodies near others or colliders by over half a thickness a substep, or pins are led past what hangs from them by over two: "
+        "up to so many times as many; 1: never"),
+    SK_TEXT(
+        sk_contact_params, ignore, "ignore", "",
+        "pairs of bodies, or of groups of them, that do not meet, by their names, commas between them: \"cape:shirt, cape:cape\""),
 };
 
 /* ---- begin ---- */
@@ -30,7 +32,8 @@ static sk_touch *touch_of(const sk_op *op) {
 /* How much of a thickness courses have room for. */
 static real roomy_share(const sk_touch *touch) {
     const real room = (real)0.45 * touch->skin.spacing - (real)0.5 * SK_NEAR_THICKNESSES * touch->thickness;
-    return touch->untouched && room > (real)0.5 * touch->thickness ? (real)0.5 : (real)0.25; // its own features stay out of reach
+    return touch->untouched && room > (real)0.5 * touch->thickness ? (real)0.5
+                                                                   : (real)0.25; // its own features stay out of reach
 }
 
 /* A heap trembles by some ways that gravity makes of a substep, however thin it is: silk of 65 x 65, whose edges are 80 thicknesses long, lost
@@ -44,7 +47,8 @@ static real most_reach(const sk_touch *touch) {
 /* What is fast is seldom as steady, and what is slow needs little room; `speed` is that of a substep, in the frame. */
 static sk_course course_from(const sk_touch *touch, sk_vec3 at, sk_vec3 step, real speed, real time) {
     const real least = (real)0.125, substeps = 40;
-    const real reach = sk_max(sk_min(most_reach(touch), least * touch->thickness + substeps * speed), roomy_share(touch) * speed);
+    const real reach =
+        sk_max(sk_min(most_reach(touch), least * touch->thickness + substeps * speed), roomy_share(touch) * speed);
     return (sk_course){sk_sub(at, sk_scale(time, step)), step, reach};
 }
 
@@ -103,7 +107,8 @@ static void load_some(void *data, int thread, size_t begin, size_t end) {
     sk_touch *touch = job->touch;
     for (size_t v = begin; v < end; v++) {
         touch->p[v] = sk_load(touch->before, job->packed, touch->slot[v]);
-        touch->inverse[v] = touch->p[v].w = sk_load(touch->x, job->packed, touch->slot[v]).w; // a method's own copy has no masses
+        touch->inverse[v] = touch->p[v].w =
+            sk_load(touch->x, job->packed, touch->slot[v]).w; // a method's own copy has no masses
     }
 }
 
@@ -115,8 +120,8 @@ void sk_touch_load(sk_touch *touch, size_t packed) {
 }
 
 static void release_slots(sk_touch *touch, sk_allocator *allocator) {
-    void **arrays[] = {(void **)&touch->copied, (void **)&touch->course_block, (void **)&touch->off,
-                       (void **)&touch->vertex_at, (void **)&touch->faces.here, (void **)&touch->faces.block};
+    void **arrays[] = {(void **)&touch->copied,    (void **)&touch->course_block, (void **)&touch->off,
+                       (void **)&touch->vertex_at, (void **)&touch->faces.here,   (void **)&touch->faces.block};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
         *arrays[i] = NULL;
@@ -133,7 +138,8 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         same &= touch->slot[v] == slot;
         touch->slot[v] = slot;
     }
-    for (size_t i = 0; i < touch->skin.inner_count; i++) touch->inner_slot[i] = run->slot_of[touch->skin.inner[i].particle];
+    for (size_t i = 0; i < touch->skin.inner_count; i++)
+        touch->inner_slot[i] = run->slot_of[touch->skin.inner[i].particle];
     if (same) return true;
     touch->found = false;
     touch->slots = 0;
@@ -145,7 +151,9 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         touch->vertex_at = sk_allocate(run->allocator, slots * sizeof *touch->vertex_at);
         touch->faces.here = sk_allocate(run->allocator, slots * sizeof *touch->faces.here);
         touch->faces.block = sk_allocate(run->allocator, (slots / 16 + 1) * sizeof *touch->faces.block);
-        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at || !touch->faces.here || !touch->faces.block) return false;
+        if (!touch->copied || !touch->course_block || !touch->off || !touch->vertex_at || !touch->faces.here ||
+            !touch->faces.block)
+            return false;
         touch->slot_capacity = slots;
     }
     touch->slots = slots;
@@ -154,7 +162,8 @@ static bool find_slots(sk_touch *touch, const sk_run *run) {
         for (int l = 0; l < 16; l++) touch->course_block[b].square[l] = SK_REAL_MAX; // who is not there is never lost
     }
     memset(touch->faces.here, 0, slots * sizeof *touch->faces.here);
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) touch->vertex_at[touch->slot[v]] = (uint32_t)v, touch->faces.here[touch->slot[v]] = 1;
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        touch->vertex_at[touch->slot[v]] = (uint32_t)v, touch->faces.here[touch->slot[v]] = 1;
     return true;
 }
 
@@ -193,7 +202,8 @@ static sk_vec3 steady_step(const sk_touch *touch, size_t v, sk_vec3 step) {
 static void set_courses(sk_touch *touch, const sk_run *run, const sk_op *op, real time) {
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!touch->lost[v] || sk_vertex_is_out(&touch->spread, v)) continue;
-        sk_vec3 goes = step_of(touch, run, op, v), now = sk_sub(goes, touch->frame_step), step = steady_step(touch, v, now);
+        sk_vec3 goes = step_of(touch, run, op, v), now = sk_sub(goes, touch->frame_step),
+                step = steady_step(touch, v, now);
         real speed = sk_max(sk_length(sk_sub(now, touch->drift)), sk_length(sk_sub(step, touch->drift)));
         touch->seen[v] = (sk_seen){sk_xyz(touch->p[v]), goes, touch->clock};
         touch->course[v] = course_from(touch, sk_sub(sk_xyz(touch->p[v]), touch->shift[0]), step, speed, time);
@@ -216,7 +226,7 @@ static bool is_known(const sk_touch *touch, const sk_run *run) {
 
 /* Finds out who is lost before the substep: the wild, too, get courses now and then. */
 static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
-    const size_t often = 2; // substeps
+    const size_t often = 2;                                                    // substeps
     bool knows = is_known(touch, run) || sk_spread_is_all_out(&touch->spread); // for who has been lost since then?
     if (!knows) sk_touch_set_frame(touch, run->vector[SK_X], op->packed, touch->now, 0);
     else touch->shift[0] = touch->shift[1];
@@ -242,7 +252,8 @@ static void begin_storm(sk_touch *touch) {
     touch->storm = touch->next_storm = touch->next_storm ? touch->next_storm : least;
     if (2 * touch->next_storm <= most) touch->next_storm *= 2;
     touch->until = touch->now + forever;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) sk_touch_put_course(touch, v, !sk_vertex_is_out(&touch->spread, v));
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        sk_touch_put_course(touch, v, !sk_vertex_is_out(&touch->spread, v));
 }
 
 /* Looks at panels: nobody is out where things go through each other, and in an implicit solve, which asks several times what
@@ -273,8 +284,10 @@ static bool is_wild(const sk_touch *touch, const sk_run *run, const sk_op *op) {
     const real share = 1 / (real)touch->skin.vertex_count;
     sk_vec3 drift = {0, 0, 0};
     real speed = 0;
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) drift = sk_add(drift, sk_scale(share, step_of(touch, run, op, v)));
-    for (size_t v = 0; v < touch->skin.vertex_count; v++) speed += share * sk_length(sk_sub(step_of(touch, run, op, v), drift));
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        drift = sk_add(drift, sk_scale(share, step_of(touch, run, op, v)));
+    for (size_t v = 0; v < touch->skin.vertex_count; v++)
+        speed += share * sk_length(sk_sub(step_of(touch, run, op, v), drift));
     return speed > (real)0.8 * most_reach(touch);
 }
 
@@ -309,8 +322,7 @@ static bool find_tangles(sk_touch *touch, const sk_run *run, const sk_op *op) {
 /* Searches where that is needed, and looks at all pairs. */
 static bool find_pairs(sk_touch *touch, const sk_run *run, const sk_op *op, bool all) {
     bool stormed = touch->storm > 0;
-    if (stormed && !all && goes_on(touch, run, op))
-        return find_pairs_in_storm(touch, run, op, is_known(touch, run));
+    if (stormed && !all && goes_on(touch, run, op)) return find_pairs_in_storm(touch, run, op, is_known(touch, run));
     touch->storm = 0;
     all |= stormed;
     bool lost = !all && mark_lost(touch, run, op);
@@ -387,9 +399,10 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     real thickness = sk_touch_thickest(touch, params_of(op)), usual = (real)params_of(op)->thickness;
     bool good = (run->iteration && touch->alone && touch->slots) || find_slots(touch, run);
     touch->now += 1, touch->clock++;
-    bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness ||
-               touch->usual < usual || touch->usual > usual || touch->now + 1 > touch->until;
-    bool same = !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
+    bool all = !touch->found || touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual ||
+               touch->usual > usual || touch->now + 1 > touch->until;
+    bool same =
+        !(touch->thickness < thickness || touch->thickness > thickness || touch->usual < usual || touch->usual > usual);
     touch->thickness = thickness;
     touch->usual = usual;
     const sk_easing *easing = &((const sk_force *)op->rule)->easing;
@@ -398,7 +411,8 @@ static void begin(sk_run *run, const sk_op *op, size_t from, size_t end) {
     touch->loaded = false;
     touch->tasks = run->tasks;
     touch->holds = good && touch->found &&
-                   (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) || sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
+                   (is_known(touch, run) || sk_spread_is_all_out(&touch->spread) ||
+                    sk_calm_holds(touch, sk_touch_farthest(touch, run->vector[SK_X], op->packed)));
     if (good) begin_where_all_are(touch, run);
     if (run->vector[SK_SUPPORT] && *run->supported) {
         memset(run->vector[SK_SUPPORT], 0, run->slot_count * sizeof *run->vector[SK_SUPPORT]);
@@ -425,18 +439,21 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     const size_t vertices = skin->vertex_count + 1, edges = skin->edge_count + 1, triangles = skin->triangle_count + 1;
     const size_t leaves = skin->leaf_count + SK_TREE_WIDTH;
     int n = 0;
-#define LIST(name, number) \
-    array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
-    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices), LIST(rank, vertices);
-    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices), LIST(inverse, vertices);
-    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices), LIST(lost, vertices), LIST(wild, vertices);
+#define LIST(name, number) array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
+    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices),
+        LIST(rank, vertices);
+    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices),
+        LIST(inverse, vertices);
+    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices),
+        LIST(lost, vertices), LIST(wild, vertices);
     LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
     LIST(faces.plane, vertices);
     LIST(press.number, vertices), LIST(press.slot, vertices);
     LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
     LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
     LIST(edge_cells, leaves), LIST(corner_cells, leaves);
-    LIST(torn, leaves), LIST(room, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves), LIST(changed, 2 * leaves), LIST(start, leaves);
+    LIST(torn, leaves), LIST(room, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves),
+        LIST(changed, 2 * leaves), LIST(start, leaves);
 #undef LIST
     return n;
 }
@@ -537,8 +554,8 @@ static bool prepare(sk_force *force, sk_allocator *allocator, const sk_particles
     forget_pairs(touch); // of a skin without vertices nobody would
     const sk_contact_params *params = force->params;
     if (sk_skin_make(&touch->skin, allocator, particles, &force->only, parts) && make_vertices(touch, allocator) &&
-        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) && sk_calm_make(touch, allocator) &&
-        sk_spread_make(touch, allocator))
+        sk_ignored_make(&touch->ignored, allocator, &touch->skin, params->ignore, parts) &&
+        sk_calm_make(touch, allocator) && sk_spread_make(touch, allocator))
         return true;
     release(force, allocator);
     return false;
@@ -560,8 +577,8 @@ static uint64_t gave_up(sk_force *force, bool *first) {
     return times;
 }
 
-static const sk_meeting_body *crowded(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,
-                                      double *thickness) {
+static const sk_meeting_body *crowded(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts,
+                                      double *edge, double *thickness) {
     sk_touch *touch = force->state;
     if (!touch || touch->asked_crowded || touch->told_crowded) return NULL;
     const sk_contact_params *params = force->params;
@@ -593,8 +610,9 @@ static const sk_meeting meeting = {
 };
 
 const sk_force_type sk_surface_contact = {
-    .kind = {"contact", "surfaces and ropes neither pass through each other nor through themselves; colliders meet all of them", SKEIN_FORCE,
-             fields, sizeof fields / sizeof *fields, sizeof(sk_contact_params)},
+    .kind = {"contact",
+             "surfaces and ropes neither pass through each other nor through themselves; colliders meet all of them",
+             SKEIN_FORCE, fields, sizeof fields / sizeof *fields, sizeof(sk_contact_params)},
     .domain = SK_OVER_PARTICLES,
     .phase = SK_MEETS,
     .passive = true,

@@ -21,12 +21,12 @@
 #ifndef SK_CONTACT_TOUCH_H
 #define SK_CONTACT_TOUCH_H
 
-#include "contact/search/boxes.h"
 #include "contact/calm.h"
 #include "contact/faces.h"
 #include "contact/pairs.h"
 #include "contact/press.h"
 #include "contact/push.h"
+#include "contact/search/boxes.h"
 #include "contact/skin.h"
 #include "contact/spread.h"
 #include "contact/tangle.h"
@@ -50,8 +50,9 @@ typedef struct sk_course_block {
 /* Whether a vertex has left its reach, among `slots` slots of x, or has gone another way in a substep, from `before` on, than
  * its course by more than a jump, whose square is given; in a frame that went on by `gone` in it. Bits of the lanes of
  * each sixteen that have. Without `before`, nobody has jumped; else the square of the longest way from there is found, too. */
-typedef bool sk_course_kernel(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots, const sk_course_block *block,
-                              real time, const sk_vec3 *shift, const sk_vec3 *gone, real jump, uint16_t *off, real *way);
+typedef bool sk_course_kernel(const sk_vec4 *x, const sk_vec4 *before, size_t packed, size_t slots,
+                              const sk_course_block *block, real time, const sk_vec3 *shift, const sk_vec3 *gone,
+                              real jump, uint16_t *off, real *way);
 
 /* Which features of a leaf are looked for: bits. */
 typedef struct sk_hot {
@@ -69,15 +70,15 @@ enum { SK_IS_FEATURED = 1, SK_TO_BE_FEATURED, SK_IS_OUT };
 /* What one thread finds of a search: all that is kept is put together in their order, so that no bit depends on them. */
 enum { SK_MOST_PARTS = 16 };
 typedef struct sk_search_part {
-    uint32_t *block; /* of the tree */
+    uint32_t *block;    /* of the tree */
     sk_ring_mark *ring; /* of leaves */
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } first, second; /* leaves whose boxes meet */
-    uint32_t *start; /* of leaves, while partners are put in order */
+    } first, second;       /* leaves whose boxes meet */
+    uint32_t *start;       /* of leaves, while partners are put in order */
     sk_pairs batch, fresh; /* pairs whose boxes may meet, and all of them that may come near */
-    size_t next, end; /* of leaves or leaves' pairs, those still to be looked at */
+    size_t next, end;      /* of leaves or leaves' pairs, those still to be looked at */
 } sk_search_part;
 
 typedef struct sk_touch {
@@ -87,64 +88,65 @@ typedef struct sk_touch {
     sk_spread spread;
     sk_tangle tangle;
     struct sk_tasks *tasks; /* of the run */
-    uint64_t shape; /* of the world that the skin was made from */
+    uint64_t shape;         /* of the world that the skin was made from */
     sk_isa isa;
-    bool alone;      /* no other rule meets */
-    bool found;      /* whether the pairs are of this skin */
-    bool followed;   /* the last bound has seen where all went */
-    bool implicit;   /* an implicit solve presses, and takes who is held back as he is */
-    bool corrects;   /* the method corrects positions: edges are held taut (taut.c) */
-    bool remembers;  /* all have been seen */
-    bool held;       /* a vertex is pinned */
-    bool untouched;  /* hardly any pairs are kept: courses may be wide */
-    bool loaded;     /* p and inverse are of this substep */
-    bool holds;      /* what was known of patches when the last bound ended still is so */
-    bool boxed;      /* whether boxes are those of the courses; */
-    bool still;      /* they are those of a substep's ways, all of them */
-    bool aimed;      /* `at` and `in_the_end` are those of this substep's ways */
-    real thickness;  /* that pairs were found for, m: the largest of any pair; */
-    real usual;      /* and the rule's, of bodies that have none of their own; */
-    real less;       /* and so much nearer surfaces may be for now, where that was raised (sk_easing) */
-    real now, until; /* substeps since the last search for all, and how long that holds */
-    uint64_t clock;  /* substeps in all */
+    bool alone;               /* no other rule meets */
+    bool found;               /* whether the pairs are of this skin */
+    bool followed;            /* the last bound has seen where all went */
+    bool implicit;            /* an implicit solve presses, and takes who is held back as he is */
+    bool corrects;            /* the method corrects positions: edges are held taut (taut.c) */
+    bool remembers;           /* all have been seen */
+    bool held;                /* a vertex is pinned */
+    bool untouched;           /* hardly any pairs are kept: courses may be wide */
+    bool loaded;              /* p and inverse are of this substep */
+    bool holds;               /* what was known of patches when the last bound ended still is so */
+    bool boxed;               /* whether boxes are those of the courses; */
+    bool still;               /* they are those of a substep's ways, all of them */
+    bool aimed;               /* `at` and `in_the_end` are those of this substep's ways */
+    real thickness;           /* that pairs were found for, m: the largest of any pair; */
+    real usual;               /* and the rule's, of bodies that have none of their own; */
+    real less;                /* and so much nearer surfaces may be for now, where that was raised (sk_easing) */
+    real now, until;          /* substeps since the last search for all, and how long that holds */
+    uint64_t clock;           /* substeps in all */
     size_t storm, next_storm; /* substeps that are left in which nobody has a course; and of the next such time */
-    size_t searched_since; /* searches since the last one for all */
-    size_t lost_since; /* how many have been lost since then, each as often as it was */
-    sk_vec3 drift;   /* how far all went in a substep then, in the mean; */
-    sk_vec3 common;  /* and what all go together in this one, or pins (bound.c) */
-    real longest;    /* m: of the ways in this substep, less what all go together; */
-    real farthest;   /* and with that, of those that have a course */
-    sk_vec3 frame_step; /* how far the frame of courses goes in a substep, as it did last, */
-    sk_vec3 shift[2];   /* and has gone before this one and after it */
+    size_t searched_since;    /* searches since the last one for all */
+    size_t lost_since;        /* how many have been lost since then, each as often as it was */
+    sk_vec3 drift;            /* how far all went in a substep then, in the mean; */
+    sk_vec3 common;           /* and what all go together in this one, or pins (bound.c) */
+    real longest;             /* m: of the ways in this substep, less what all go together; */
+    real farthest;            /* and with that, of those that have a course */
+    sk_vec3 frame_step;       /* how far the frame of courses goes in a substep, as it did last, */
+    sk_vec3 shift[2];         /* and has gone before this one and after it */
     /* by slot */
-    const sk_vec4 *x;      /* while a substep is taken */
-    const sk_vec4 *before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
-    sk_vec4 *copied;       /* a copy of it */
-    bool start_is_kept;    /* the method keeps it until the bound */
+    const sk_vec4 *x; /* while a substep is taken */
+    const sk_vec4 *
+        before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
+    sk_vec4 *copied;    /* a copy of it */
+    bool start_is_kept; /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
     uint32_t *vertex_at;
     size_t slots, slot_capacity;
     /* by vertex */
     uint32_t *slot;
-    uint32_t *inner_slot; /* of those within solids */
-    sk_vec4 *p;    /* the place before the substep */
-    sk_vec4 *q;    /* after it */
-    sk_vec4 *way;  /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
-    sk_vec4 *stand;   /* where it is after a substep if it goes none of its way, less the same: p, or */
-    sk_vec4 *yielded; /* where who is in the way of pins has room (yield.c) */
-    uint8_t *rank;    /* how far from a pin, in pairs; SK_STANDS: nobody moves it */
+    uint32_t *inner_slot;     /* of those within solids */
+    sk_vec4 *p;               /* the place before the substep */
+    sk_vec4 *q;               /* after it */
+    sk_vec4 *way;             /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
+    sk_vec4 *stand;           /* where it is after a substep if it goes none of its way, less the same: p, or */
+    sk_vec4 *yielded;         /* where who is in the way of pins has room (yield.c) */
+    uint8_t *rank;            /* how far from a pin, in pairs; SK_STANDS: nobody moves it */
     sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
     sk_course *course;
     sk_seen *seen;
-    real *inverse; /* mass, 1/kg */
+    real *inverse;            /* mass, 1/kg */
     real *share, *next_share; /* of its way that it may go */
-    uint8_t *lowered; /* its share was, in the last round */
-    uint8_t *loses;      /* of pieces of the skin: what who of it is held back loses (impact.c) */
-    uint32_t *waiting; /* those whose edges are still to be looked at, in a ring; */
-    uint8_t *waits;    /* and whether it is one of them */
-    uint8_t *lost;    /* it is looked for */
-    uint8_t *wild;    /* it has left its course and has none: it is looked for on its way in each substep */
+    uint8_t *lowered;         /* its share was, in the last round */
+    uint8_t *loses;           /* of pieces of the skin: what who of it is held back loses (impact.c) */
+    uint32_t *waiting;        /* those whose edges are still to be looked at, in a ring; */
+    uint8_t *waits;           /* and whether it is one of them */
+    uint8_t *lost;            /* it is looked for */
+    uint8_t *wild;            /* it has left its course and has none: it is looked for on its way in each substep */
     size_t wild_count;
     /* of the search */
     sk_box *corner_box; /* of vertices: where they are, and in its fourth number how much wider a box has to be */
@@ -153,28 +155,28 @@ typedef struct sk_touch {
     sk_hot *hot;
     sk_edge_cells *edge_cells; /* of leaves */
     sk_corner_cells *corner_cells;
-    real cells;                /* a metre */
+    real cells; /* a metre */
     sk_tree tree;
-    uint8_t *torn;                /* leaves that have blown up (torn.c), */
-    real *room;                   /* and by how much, m, they had not when it was asked, which was, if ever, */
-    sk_vec4 *asked_at;            /* with vertices there */
-    real torn_room;               /* the least */
-    uint64_t torn_clock;          /* the substep that it is known of */
+    uint8_t *torn;       /* leaves that have blown up (torn.c), */
+    real *room;          /* and by how much, m, they had not when it was asked, which was, if ever, */
+    sk_vec4 *asked_at;   /* with vertices there */
+    real torn_room;      /* the least */
+    uint64_t torn_clock; /* the substep that it is known of */
     bool torn_asked, any_torn, torn_changed;
-    uint8_t *anew, *moved;        /* leaves that are looked for, and whose boxes are new; */
-    uint8_t *featured;            /* whether their features have boxes, too */
-    bool everybody;               /* all features of all leaves are looked for */
-    uint8_t *changed;             /* slots of a level of the tree, and of the next one */
-    bool refit;                   /* all of the tree is old */
-    uint32_t *start;              /* of leaves, and one more: where their partners begin */
+    uint8_t *anew, *moved; /* leaves that are looked for, and whose boxes are new; */
+    uint8_t *featured;     /* whether their features have boxes, too */
+    bool everybody;        /* all features of all leaves are looked for */
+    uint8_t *changed;      /* slots of a level of the tree, and of the next one */
+    bool refit;            /* all of the tree is old */
+    uint32_t *start;       /* of leaves, and one more: where their partners begin */
     struct {
         uint32_t *data;
         size_t count, capacity;
-    } first, partner;             /* leaves whose boxes meet: the first and the second of both, in order */
+    } first, partner; /* leaves whose boxes meet: the first and the second of both, in order */
     sk_search_part part[SK_MOST_PARTS];
     int part_count;
-    sk_pairs kept[SK_PAIR_SORTS]; /* of the last search for all, in their order; */
-    sk_pairs late[SK_PAIR_SORTS]; /* and of searches since then, one after the other */
+    sk_pairs kept[SK_PAIR_SORTS];     /* of the last search for all, in their order; */
+    sk_pairs late[SK_PAIR_SORTS];     /* and of searches since then, one after the other */
     size_t told_apart[SK_PAIR_SORTS]; /* late pairs of which it is known whether they may close */
     sk_pairs fresh;
     sk_pair_list near[SK_PAIR_SORTS];       /* in the order of leaves; */
@@ -186,9 +188,9 @@ typedef struct sk_touch {
     struct {
         sk_pair_place *data;
         size_t count, capacity;
-    } order, other_order;         /* of late pairs that are near, or of those that are divided */
-    uint64_t searches, given_up; /* how often it searched, and gave up: */
-    uint64_t told;               /* of these the world knows; */
+    } order, other_order;             /* of late pairs that are near, or of those that are divided */
+    uint64_t searches, given_up;      /* how often it searched, and gave up: */
+    uint64_t told;                    /* of these the world knows; */
     bool asked_crowded, told_crowded; /* whether a body of this skin is too thick for its edges; and of one */
     sk_faces faces;
 } sk_touch;
@@ -228,7 +230,8 @@ static inline real sk_pair_goal(const sk_touch *touch, uint32_t a, uint32_t b, r
 static inline real sk_pair_friction(const sk_touch *touch, uint32_t a, uint32_t b, real rule) {
     const sk_skin *skin = &touch->skin;
     if (!(skin->thickest > 0)) return rule;
-    real first = skin->thickness[a] > 0 ? skin->friction[a] : rule, second = skin->thickness[b] > 0 ? skin->friction[b] : rule;
+    real first = skin->thickness[a] > 0 ? skin->friction[a] : rule,
+         second = skin->thickness[b] > 0 ? skin->friction[b] : rule;
     return (real)0.5 * (first + second);
 }
 
@@ -335,8 +338,8 @@ bool sk_touch_share_velocities(sk_touch *touch, sk_allocator *allocator, const s
 /* ---- make/crowded.c ---- */
 
 /* The first body that is too thick for its edges, as the force's kind says (sk_meeting); NULL: none, or there is no memory. */
-const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts, double usual,
-                                        double *edge, double *thickness);
+const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts,
+                                        double usual, double *edge, double *thickness);
 
 /* ---- taut.c ---- */
 
@@ -369,7 +372,8 @@ void sk_touch_put_boxes(sk_touch *touch, real part);
 /* Lists those edges that go through a triangle where they are loaded, in the order of leaves; with `of`, if it is known
  * that of others none does, those around vertices that have it set. `aside`: of two solids one is taken to be a little aside (sides.c), or those with faces
  * in one plane would have none. False when there is no memory. */
-bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list, bool aside);
+bool sk_touch_list_crossings(sk_touch *touch, sk_allocator *allocator, const uint8_t *of, sk_crossing_list *list,
+                             bool aside);
 
 /* ---- sides.c ---- */
 

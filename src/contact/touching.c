@@ -19,10 +19,11 @@ static void tell(listing *list, int sort, size_t k) {
     skein_surface_contact *out = &list->out[list->count - 1];
     real weight[4];
     sk_weights_of(pairs, sort, k, weight);
-    *out = (skein_surface_contact){.edges = sort == SK_EDGES,
-                                   .gap = (double)pairs->distance[k],
-                                   .thickness = (double)pairs->thickness[k],
-                                   .normal = {(double)pairs->normal[0][k], (double)pairs->normal[1][k], (double)pairs->normal[2][k]}};
+    *out = (skein_surface_contact){
+        .edges = sort == SK_EDGES,
+        .gap = (double)pairs->distance[k],
+        .thickness = (double)pairs->thickness[k],
+        .normal = {(double)pairs->normal[0][k], (double)pairs->normal[1][k], (double)pairs->normal[2][k]}};
     for (int c = 0; c < 4; c++) {
         out->particle[c] = list->touch->skin.particle[pairs->corner[c][k]];
         out->weight[c] = (double)weight[c];
@@ -68,7 +69,8 @@ static void add_edges(listing *list, const sk_leaf *a, const sk_leaf *b) {
     const sk_touch *touch = list->touch;
     for (uint32_t e = a->first_edge; e < a->first_edge + a->edges; e++)
         for (uint32_t f = a == b ? e + 1 : b->first_edge; f < b->first_edge + b->edges; f++) {
-            const uint32_t *one = touch->skin.edge[e], *two = touch->skin.edge[f], corner[4] = {one[0], one[1], two[0], two[1]};
+            const uint32_t *one = touch->skin.edge[e], *two = touch->skin.edge[f],
+                           corner[4] = {one[0], one[1], two[0], two[1]};
             if (one[0] != two[0] && one[0] != two[1] && one[1] != two[0] && one[1] != two[1] &&
                 sk_boxes_meet(&touch->edge_box[e], &touch->edge_box[f]))
                 add(list, SK_EDGES, corner);
@@ -101,7 +103,8 @@ bool sk_touch_touching(sk_force *force, sk_allocator *allocator, const sk_vec4 *
     sk_touch_load_from(touch, x, slot_of);
     sk_touch_put_boxes(touch, (real)0.51 * touch->thickness);
     bool too_many, good = true;
-    for (int sort = 0; sort < SK_PAIR_SORTS; sort++) good = good && sk_pairs_reserve(&list.some[sort], allocator, SOME + 16);
+    for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
+        good = good && sk_pairs_reserve(&list.some[sort], allocator, SOME + 16);
     good = good && sk_touch_partners(touch, allocator, SIZE_MAX / 2, true, &too_many);
     if (good) list_all(&list);
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++) sk_pairs_release(&list.some[sort], allocator);

@@ -44,7 +44,8 @@ static void try_face(asking *ask, const uint32_t t[3]) {
     const real alike = (real)0.95;
     const sk_touch *touch = ask->touch;
     const uint32_t piece = touch->skin.piece[t[0]];
-    const sk_vec3 a = sk_xyz(touch->p[t[0]]), n = sk_cross(sk_sub(sk_xyz(touch->p[t[1]]), a), sk_sub(sk_xyz(touch->p[t[2]]), a));
+    const sk_vec3 a = sk_xyz(touch->p[t[0]]),
+                  n = sk_cross(sk_sub(sk_xyz(touch->p[t[1]]), a), sk_sub(sk_xyz(touch->p[t[2]]), a));
     const real length = sk_length(n), out = (real)touch->skin.closed[piece] * (piece == ask->other ? 1 : -1);
     if (!(length > 0) || ask->count == MOST_DIRECTIONS) return;
     const sk_vec3 d = sk_scale(out / length, n);
@@ -83,7 +84,11 @@ static uint32_t other_of(const sk_touch *touch, size_t i, uint32_t one) {
 
 bool sk_tangle_way_out(const sk_touch *touch, uint32_t one, sk_vec3 *way) {
     const size_t count = touch->tangle.crossing.count;
-    asking ask = {.touch = touch, .one = one, .other = one, .tried = {sk_scale(1 / sk_max(sk_length(*way), (real)1e-18), *way)}, .count = 1};
+    asking ask = {.touch = touch,
+                  .one = one,
+                  .other = one,
+                  .tried = {sk_scale(1 / sk_max(sk_length(*way), (real)1e-18), *way)},
+                  .count = 1};
     for (size_t i = 0; i < count && ask.other == one; i++) ask.other = other_of(touch, i, one);
     if (ask.other == one) return false;
     ask.shortest = (real)0.5 * way_along(touch, one, ask.other, ask.tried[0]);

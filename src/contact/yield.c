@@ -28,7 +28,11 @@ typedef struct standing {
 
 static standing standing_of(const sk_touch *touch, const sk_yielding *pair) {
     const uint32_t *v = pair->corner;
-    standing s = {.v = v, .first = pair->sort == SK_EDGES ? 2 : 1, .low = SK_REAL_MAX, .high = -SK_REAL_MAX, .rank = {NOBODY, NOBODY}};
+    standing s = {.v = v,
+                  .first = pair->sort == SK_EDGES ? 2 : 1,
+                  .low = SK_REAL_MAX,
+                  .high = -SK_REAL_MAX,
+                  .rank = {NOBODY, NOBODY}};
     s.normal = pair->normal;
     const sk_vec3 from = sk_xyz(touch->p[v[0]]);
     real low = SK_REAL_MAX, high = -SK_REAL_MAX;
@@ -56,17 +60,21 @@ static real least_of(const sk_touch *touch, real distance) {
 /* Whether somebody of it is in the way of pins. */
 static bool has_too_little(const sk_touch *touch, const standing *s) {
     const real none = SK_NO_GAP * touch->thickness, enough = (real)0.5 * touch->thickness;
-    if (s->rank[0] + s->rank[1] == 0 || !(s->before > none) || !(s->low - s->high < (real)0.999 * sk_min(s->before, enough))) return false;
+    if (s->rank[0] + s->rank[1] == 0 || !(s->before > none) ||
+        !(s->low - s->high < (real)0.999 * sk_min(s->before, enough)))
+        return false;
     sk_vec3 x[2][4];
     for (int c = 0; c < 4; c++) x[0][c] = sk_xyz(touch->p[s->v[c]]), x[1][c] = sk_xyz(touch->stand[s->v[c]]);
-    return sk_passes[s->first == 2 ? SK_EDGES : SK_CORNERS][touch->isa]((const sk_vec3(*)[4])x, SK_NEAR_THICKNESSES * touch->thickness);
+    return sk_passes[s->first == 2 ? SK_EDGES : SK_CORNERS][touch->isa]((const sk_vec3(*)[4])x,
+                                                                        SK_NEAR_THICKNESSES * touch->thickness);
 }
 
 /* Moves corners of the feature that is farther from pins, or of both; whether it has. */
 static bool yield_pair(sk_touch *touch, const standing *s) {
     const bool both = s->rank[0] == s->rank[1];
     const real least = (real)0.1 * touch->thickness, enough = (real)0.5 * touch->thickness;
-    const real keep = sk_max(least, sk_min(s->before, enough)), part = both ? (real)0.5 * (keep - (s->low - s->high)) : 0;
+    const real keep = sk_max(least, sk_min(s->before, enough)),
+               part = both ? (real)0.5 * (keep - (s->low - s->high)) : 0;
     bool moved = false;
     for (int c = 0; c < 4; c++) {
         const bool upper = c < s->first;
@@ -96,14 +104,17 @@ static bool is_listed(const sk_yielding *list, size_t count, const sk_yielding *
 
 /* Adds the pairs that come near each other on straight ways to where their corners stand now, some of which are not where they were. */
 static bool list_pairs(sk_touch *touch, sk_allocator *allocator) {
-    const real near = (real)0.6 * touch->thickness; // more than what they are to have, and less than what all are known of
+    const real near =
+        (real)0.6 * touch->thickness; // more than what they are to have, and less than what all are known of
     sk_yielding_list *list = &touch->yielding;
     const size_t before = list->count;
     for (int sort = 0; sort < SK_PAIR_SORTS; sort++)
         for (size_t i = 0; i < touch->may_close[sort].count; i++) {
             const sk_closing_pair *one = &touch->may_close[sort].data[i];
             const uint32_t *v = one->corner;
-            if (touch->rank[v[0]] == NOBODY && touch->rank[v[1]] == NOBODY && touch->rank[v[2]] == NOBODY && touch->rank[v[3]] == NOBODY) continue;
+            if (touch->rank[v[0]] == NOBODY && touch->rank[v[1]] == NOBODY && touch->rank[v[2]] == NOBODY &&
+                touch->rank[v[3]] == NOBODY)
+                continue;
             if (touch->tangle.any && sk_pair_is_tangled(touch, v, sort)) continue;
             const sk_pairs *pairs = one->entry & 1 ? &touch->late[sort] : &touch->kept[sort];
             const size_t k = one->entry / 2;
@@ -113,7 +124,8 @@ static bool list_pairs(sk_touch *touch, sk_allocator *allocator) {
                                       .sort = (uint8_t)sort};
             sk_vec3 x[2][4];
             for (int c = 0; c < 4; c++) x[0][c] = sk_xyz(touch->p[v[c]]), x[1][c] = sk_xyz(touch->stand[v[c]]);
-            if (is_listed(list->data, before, &pair) || !sk_passes[sort][touch->isa]((const sk_vec3(*)[4])x, near)) continue;
+            if (is_listed(list->data, before, &pair) || !sk_passes[sort][touch->isa]((const sk_vec3(*)[4])x, near))
+                continue;
             if (!SK_RESERVE(allocator, list, list->count + 1)) return false;
             list->data[list->count++] = pair;
         }
@@ -176,7 +188,8 @@ static void begin(sk_touch *touch) {
 static bool is_hopeless(const sk_touch *touch) {
     const real most_cells = 16, near = (real)0.6 * touch->thickness;
     if (!(touch->longest < most_cells * touch->skin.longest)) return true;
-    const size_t most = 4 * touch->skin.vertex_count, known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
+    const size_t most = 4 * touch->skin.vertex_count,
+                 known = touch->may_close[SK_CORNERS].count + touch->may_close[SK_EDGES].count;
     size_t count = 0;
     for (int sort = 0; sort < SK_PAIR_SORTS && known > most; sort++)
         for (size_t i = 0; i < touch->may_close[sort].count; i++) {
@@ -198,7 +211,8 @@ bool sk_touch_is_passed(const sk_touch *touch) {
             const sk_closing_pair *one = &touch->may_close[sort].data[i];
             const sk_pairs *pairs = one->entry & 1 ? &touch->late[sort] : &touch->kept[sort];
             const size_t k = one->entry / 2;
-            if (pairs->settled[k] != SK_IS_FORCED || (touch->tangle.any && sk_pair_is_tangled(touch, one->corner, sort))) continue;
+            if (pairs->settled[k] != SK_IS_FORCED || (touch->tangle.any && sk_pair_is_tangled(touch, one->corner, sort)))
+                continue;
             sk_vec3 x[2][4];
             for (int c = 0; c < 4; c++) {
                 const uint32_t v = one->corner[c];
@@ -217,7 +231,8 @@ bool sk_touch_yield(sk_touch *touch, sk_allocator *allocator, real least) {
     begin(touch);
     bool changed = find_ways(touch);
     for (int search = 0; search < SEARCHES && (changed || !search); search++) {
-        if (!sk_touch_search_ways(touch, allocator) || !sk_touch_list_closing(touch, allocator, least, true) || !list_pairs(touch, allocator))
+        if (!sk_touch_search_ways(touch, allocator) || !sk_touch_list_closing(touch, allocator, least, true) ||
+            !list_pairs(touch, allocator))
             return false;
         if (search && is_hopeless(touch)) break;
         begin(touch);

@@ -24,9 +24,10 @@ SK_INLINE num bounds_mirrored(num at, num speed, scalar h, scalar low, scalar hi
 }
 
 SK_INLINE vec3 bounds_in_box(bounds_params p, vec3 x, vec3 v, scalar h) {
-    return vec3_of(bounds_mirrored(x.x, v.x, h, PARAM(p.centre[0] - 0.5 * p.size[0]), PARAM(p.centre[0] + 0.5 * p.size[0])),
-                   bounds_mirrored(x.y, v.y, h, PARAM(p.centre[1] - 0.5 * p.size[1]), PARAM(p.centre[1] + 0.5 * p.size[1])),
-                   bounds_mirrored(x.z, v.z, h, PARAM(p.centre[2] - 0.5 * p.size[2]), PARAM(p.centre[2] + 0.5 * p.size[2])));
+    return vec3_of(
+        bounds_mirrored(x.x, v.x, h, PARAM(p.centre[0] - 0.5 * p.size[0]), PARAM(p.centre[0] + 0.5 * p.size[0])),
+        bounds_mirrored(x.y, v.y, h, PARAM(p.centre[1] - 0.5 * p.size[1]), PARAM(p.centre[1] + 0.5 * p.size[1])),
+        bounds_mirrored(x.z, v.z, h, PARAM(p.centre[2] - 0.5 * p.size[2]), PARAM(p.centre[2] + 0.5 * p.size[2])));
 }
 
 SK_INLINE vec3 bounds_in_ball(bounds_params p, vec3 x, vec3 v, scalar h) {
@@ -50,9 +51,10 @@ SK_INLINE num bounds_back(num at, scalar size, scalar low, scalar high) {
 }
 
 SK_INLINE vec3 bounds_shift(bounds_params p, vec3 x) {
-    return vec3_of(bounds_back(x.x, PARAM(p.size[0]), PARAM(p.centre[0] - 0.5 * p.size[0]), PARAM(p.centre[0] + 0.5 * p.size[0])),
-                   bounds_back(x.y, PARAM(p.size[1]), PARAM(p.centre[1] - 0.5 * p.size[1]), PARAM(p.centre[1] + 0.5 * p.size[1])),
-                   bounds_back(x.z, PARAM(p.size[2]), PARAM(p.centre[2] - 0.5 * p.size[2]), PARAM(p.centre[2] + 0.5 * p.size[2])));
+    return vec3_of(
+        bounds_back(x.x, PARAM(p.size[0]), PARAM(p.centre[0] - 0.5 * p.size[0]), PARAM(p.centre[0] + 0.5 * p.size[0])),
+        bounds_back(x.y, PARAM(p.size[1]), PARAM(p.centre[1] - 0.5 * p.size[1]), PARAM(p.centre[1] + 0.5 * p.size[1])),
+        bounds_back(x.z, PARAM(p.size[2]), PARAM(p.centre[2] - 0.5 * p.size[2]), PARAM(p.centre[2] + 0.5 * p.size[2])));
 }
 // ---- end of arithmetic ----
 

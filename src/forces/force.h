@@ -64,7 +64,8 @@ typedef struct sk_meeting {
                     const sk_meeting_parts *parts, sk_isa isa);
     void (*release)(sk_force *force, sk_allocator *allocator);
     /* Counts the edges that pass through a triangle at the positions x, by slots. False: no memory. */
-    bool (*crossings)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of, size_t *count);
+    bool (*crossings)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
+                      size_t *count);
     /* Finds the pairs of features no farther apart than their thickness: writes up to `most` to `out`, in which the
      * caller fills in the rules, and their number to `count`. False: no memory. */
     bool (*touching)(sk_force *force, sk_allocator *allocator, const sk_vec4 *x, const uint32_t *slot_of,
@@ -76,8 +77,8 @@ typedef struct sk_meeting {
     /* How often there were too many pairs, so that it skipped all, since it was last asked; `first` where it had never been. */
     uint64_t (*gave_up)(sk_force *force, bool *first);
     /* A body that is too thick for its edges, as they were built, in the mean: both in m. NULL: none, or it was told of. */
-    const sk_meeting_body *(*crowded)(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts, double *edge,
-                                      double *thickness);
+    const sk_meeting_body *(*crowded)(sk_force *force, sk_allocator *allocator, const sk_meeting_parts *parts,
+                                      double *edge, double *thickness);
 } sk_meeting;
 
 typedef struct sk_force_type {
@@ -147,8 +148,9 @@ typedef struct sk_force_type {
  * slower the less is left of it: by a speed that falls by a hundredth of what gravity takes, so that nothing is thrown, and piles of
  * dozens of layers stay together. */
 typedef struct sk_easing {
-    double less, since;      /* m, s */
-    uint32_t asks, asks_end; /* particles from which to which it is still to be found out how much is missing: none, if none */
+    double less, since; /* m, s */
+    uint32_t asks,
+        asks_end; /* particles from which to which it is still to be found out how much is missing: none, if none */
 } sk_easing;
 /* How much of it is left at a time, m. */
 static inline double sk_easing_left(const sk_easing *easing, double time) {

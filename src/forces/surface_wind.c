@@ -34,8 +34,8 @@ typedef struct blow {
 
 /* The lanes of a part whose bits are set in a word that has a bit for each lane of a block. */
 SK_INLINE sk_mask lanes_in(uint16_t word, size_t part) {
-    static const SK_VECTOR_ALIGNED sk_lane_int bit[SK_LANES] = {1,      1 << 1, 1 << 2,  1 << 3,  1 << 4,  1 << 5,
-                                                                1 << 6, 1 << 7, 1 << 8,  1 << 9,  1 << 10, 1 << 11,
+    static const SK_VECTOR_ALIGNED sk_lane_int bit[SK_LANES] = {1,       1 << 1,  1 << 2,  1 << 3, 1 << 4,  1 << 5,
+                                                                1 << 6,  1 << 7,  1 << 8,  1 << 9, 1 << 10, 1 << 11,
                                                                 1 << 12, 1 << 13, 1 << 14, 1 << 15};
     if (word == UINT16_MAX) return (sk_mask){0} == 0;
     sk_mask at = ((const sk_mask *)(const void *)bit)[part];
@@ -75,8 +75,8 @@ SK_INLINE sk_wide3 share_of(const blow *air, sk_wide3 edge, sk_wide3 to_tip, sk_
 
 /* Adds the forces of the two triangles beside the diagonal from `base` to `far` to the sums of the four corners, or
  * sets these if the two are `alone`. */
-SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, bool alone, int base, int far,
-                       int tip, int other, const uint16_t *has, size_t part) {
+SK_INLINE void add_two(const blow *air, const sk_wide3 *x, const sk_wide3 *v, sk_wide3 *sum, bool alone, int base,
+                       int far, int tip, int other, const uint16_t *has, size_t part) {
     sk_wide3 edge = minus3(x[far], x[base]), moving = plus3(v[base], v[far]);
     sk_wide3 one = share_of(air, edge, minus3(x[tip], x[base]), plus3(moving, v[tip]), lanes_in(has[tip], part));
     sk_wide3 two = share_of(air, edge, minus3(x[other], x[base]), plus3(moving, v[other]), lanes_in(has[other], part));
@@ -106,8 +106,8 @@ SK_INLINE void blow_on(const blow *air, const corners *at, const uint16_t *has, 
 
 /* Cells whose diagonals do not all fall. They are rare, and a function of their own: inlined, they would take registers
  * from the common case (AVX2 and SSE took 1.1 times as long). */
-static __attribute__((noinline)) void blow_on_others(const blow *air, const corners *at, const uint16_t *has, size_t part,
-                                                     sk_wide3 *sum) {
+static __attribute__((noinline)) void blow_on_others(const blow *air, const corners *at, const uint16_t *has,
+                                                     size_t part, sk_wide3 *sum) {
     bool falling = has[1] | has[2], rising = has[0] | has[3];
     if (falling && rising) blow_on(air, at, has, part, true, true, sum);
     else blow_on(air, at, has, part, false, rising, sum);
@@ -161,7 +161,8 @@ void SK_KERNEL(over_patch)(sk_run *run, const sk_op *op, size_t begin, size_t en
                               {v + here, v + next, v + line + here, v + line + next}};
                 blow_on_cells(&air, &at, patch->has[r * width + k], p, f + here, f + line + here, &to);
             }
-            corners at = {{x + here, turned[0], x + line + here, turned[1]}, {v + here, turned[2], v + line + here, turned[3]}};
+            corners at = {{x + here, turned[0], x + line + here, turned[1]},
+                          {v + here, turned[2], v + line + here, turned[3]}};
             blow_on_cells(&air, &at, patch->has[r * width + width - 1], p, f + here, f + line + here, &to);
             over[0][p] = to.upper.x, over[0][SK_PARTS + p] = to.upper.y, over[0][2 * SK_PARTS + p] = to.upper.z;
             over[1][p] = to.lower.x, over[1][SK_PARTS + p] = to.lower.y, over[1][2 * SK_PARTS + p] = to.lower.z;
@@ -187,7 +188,8 @@ SK_INLINE void blow_on_part(sk_run *run, const sk_op *op, const blow *air, size_
     size_t packed = strips ? op->packed : 0;
     sk_wide3 x[3], moving = {{0}, {0}, {0}};
     for (int k = 0; k < 3; k++) {
-        sk_wide4 at = sk_gather_any(run->vector[SK_X], packed, corner[k]), v = sk_gather_any(run->vector[SK_V], packed, corner[k]);
+        sk_wide4 at = sk_gather_any(run->vector[SK_X], packed, corner[k]),
+                 v = sk_gather_any(run->vector[SK_V], packed, corner[k]);
         x[k] = (sk_wide3){at.x, at.y, at.z};
         moving = plus3(moving, (sk_wide3){v.x, v.y, v.z});
     }

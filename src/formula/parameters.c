@@ -141,8 +141,7 @@ skein_status sk_formula_check_used(const skein_kind *own, const skein_formula *c
         bool used = false;
         for (size_t f = 0; f < count; f++) used |= names_parameter(formulas[f], (uint32_t)i);
         if (!used)
-            return sk_fail(error, SKEIN_ERROR_NAME, names[i] - PREFIX, "'%s' is in no formula of this object",
-                           names[i]);
+            return sk_fail(error, SKEIN_ERROR_NAME, names[i] - PREFIX, "'%s' is in no formula of this object", names[i]);
     }
     return SKEIN_OK;
 }

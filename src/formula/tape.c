@@ -206,8 +206,7 @@ static void load_leaves(builder *b) {
             uint8_t number = (uint8_t)(index / 3 - (velocity ? SK_FORMULA_PARTICLES : 0));
             if (*first == NO_REGISTER) {
                 *first = new_registers(b, 3);
-                PUSH(b, &b->tape->loads,
-                     (sk_tape_load){velocity ? SK_TAPE_VELOCITY : SK_TAPE_POSITION, number, *first});
+                PUSH(b, &b->tape->loads, (sk_tape_load){velocity ? SK_TAPE_VELOCITY : SK_TAPE_POSITION, number, *first});
             }
             plan->place = (uint16_t)(*first + index % 3);
         }

@@ -21,9 +21,8 @@ SK_KERNELS(const sk_tape_kernels, kernels);
 #ifdef SK_ISA
 
 #ifdef SK_SMALL
-#define EACH(value_)                                     \
-    _Pragma("clang loop unroll_count(4)")                \
-    for (size_t i = 0; i < count; i++) to[i] = (value_); \
+#define EACH(value_)                                                                           \
+    _Pragma("clang loop unroll_count(4)") for (size_t i = 0; i < count; i++) to[i] = (value_); \
     break
 #else
 #define EACH(value_)                                     \
@@ -299,8 +298,7 @@ SK_INLINE size_t go_through(const sk_tape *tape, const sk_tape_input *input, siz
     return guarded;
 }
 
-static size_t evaluate(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end,
-                       real *const *outputs) {
+static size_t evaluate(const sk_tape *tape, const sk_tape_input *input, size_t begin, size_t end, real *const *outputs) {
     return go_through(tape, input, begin, end, outputs);
 }
 

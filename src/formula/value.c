@@ -205,8 +205,7 @@ const sk_function sk_functions[] = {
     {"min", "nn", apply_min, "min(x, y)", "the smaller one"},
     {"max", "nn", apply_max, "max(x, y)", "the larger one"},
     {"clamp", "nnn", apply_clamp, "clamp(x, low, high)", "x, taken into low to high"},
-    {"smoothstep", "nnn", apply_smoothstep, "smoothstep(from, to, x)",
-     "0 up to `from`, 1 from `to` on, smooth between"},
+    {"smoothstep", "nnn", apply_smoothstep, "smoothstep(from, to, x)", "0 up to `from`, 1 from `to` on, smooth between"},
     {"select", "baa", apply_select, "select(x < y, yes, no)", "one of two numbers or vectors"},
     {"rest", "a", NULL, "rest(...)", "what an expression is at the rest pose: a number or vector for each element"},
 };

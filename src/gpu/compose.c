@@ -117,8 +117,7 @@ static bool does_nothing(const cutter *c, const sk_op *op) {
     if (sk_op_type_of(op)->reverse != SK_REVERSE_KICK || op->dst != op->source[0]) return false;
     for (size_t i = passes->ops.count; i-- > c->pending;) {
         const sk_op *before = passes->ops.data[i];
-        if (sk_op_writes(before) >> op->source[1] & 1)
-            return sk_op_clears(before);
+        if (sk_op_writes(before) >> op->source[1] & 1) return sk_op_clears(before);
     }
     return false;
 }
@@ -217,11 +216,10 @@ static void put_buffers(sk_gpu_text *text, const sk_gpu_pass *pass, uint32_t loa
 
 static void put_main(sk_gpu_text *text, const sk_gpu_pass *pass, const sk_op *const *ops, const traffic *t,
                      uint32_t stores, size_t particle_count) {
-    sk_gpu_put(text,
-               "void main() {\n"
-               "    uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +"
-               " gl_LocalInvocationID.x;\n"
-               "    if (place >= head.x) return;\n");
+    sk_gpu_put(text, "void main() {\n"
+                     "    uint place = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * gl_WorkGroupSize.x +"
+                     " gl_LocalInvocationID.x;\n"
+                     "    if (place >= head.x) return;\n");
     sk_gpu_put(text, pass->kind != SK_GPU_NEIGHBOURS ? "    uint slot = place;\n"
                      : pass->by_place                ? "    uint slot = slot_at(place);\n"
                                                      : "    uint slot = slot_of_particle(head.y + place);\n");

@@ -7,8 +7,9 @@
 #define BIT(vector) (1u << (vector))
 
 const char *sk_gpu_vector_name(sk_vector vector) {
-    static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
-                                                       "T3",   "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S", "SUPPORT"};
+    static const char *const names[SK_VECTOR_COUNT] = {"none", "X",  "V",  "F",   "X0",  "V0", "P",
+                                                       "T0",   "T1", "T2", "T3",  "T4",  "T5", "T6",
+                                                       "T7",   "T8", "T9", "T10", "T11", "S",  "SUPPORT"};
     return names[vector];
 }
 

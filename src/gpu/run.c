@@ -79,7 +79,8 @@ static void call_pass(sk_gpu_device *device, const sk_run *run, const sk_gpu_pas
 }
 
 static void call_grid(sk_gpu_device *device, const sk_gpu_pass *pass) {
-    sk_gpu_call call = {.pass = pass, .first = pass->op->group->first, .count = pass->op->group->end - pass->op->group->first};
+    sk_gpu_call call = {
+        .pass = pass, .first = pass->op->group->first, .count = pass->op->group->end - pass->op->group->first};
     float(*block)[4] = stage_block(device, SK_GPU_GRID_BLOCK, &call.block);
     sk_gpu_grid_pack(&device->grid, pass->op, block);
     device->calls[device->call_count++] = call;

@@ -18,10 +18,10 @@
 #include "plan/op.h"
 
 typedef struct sk_leash {
-    sk_vec3 from, to;             /* the place when the step begins and when it ends */
-    sk_vec3 stop_from, stop_to;   /* the centre of the ball behind it, likewise */
-    real pull, most, radius;      /* N/m, 0: none; m, infinite: none; m, 0: none */
-    bool held;                    /* by any of these */
+    sk_vec3 from, to;           /* the place when the step begins and when it ends */
+    sk_vec3 stop_from, stop_to; /* the centre of the ball behind it, likewise */
+    real pull, most, radius;    /* N/m, 0: none; m, infinite: none; m, 0: none */
+    bool held;                  /* by any of these */
 } sk_leash;
 
 /* A world's leashes, by slot, for the present step. */

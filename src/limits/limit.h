@@ -26,8 +26,8 @@ typedef struct sk_anchor {
 /* When tethers are applied. A cloth with coarse grids has three sets of them: position methods use the first two,
  * others the last. Where a grid's cells are longer one way, all are applied last, besides the coarsest grid's own. */
 typedef enum sk_limit_order {
-    SK_LIMIT_LAST,           /* after all that pulls */
-    SK_LIMIT_SELDOM,         /* the same, but by position methods in every second substep while surfaces may meet, and none do */
+    SK_LIMIT_LAST,   /* after all that pulls */
+    SK_LIMIT_SELDOM, /* the same, but by position methods in every second substep while surfaces may meet, and none do */
     SK_LIMIT_BEFORE_COARSE,  /* on the coarsest grid's particles, before coarse grids carry their movement on */
     SK_LIMIT_AFTER_COARSE,   /* on particles near an anchor, before all that pulls, as seldom */
     SK_LIMIT_WITHOUT_COARSE, /* last, by methods that do not use coarse grids */
@@ -37,8 +37,8 @@ typedef struct sk_limit {
     sk_kernels kernel;
     const char *label;
     const bool *enabled;
-    bool asleep;         /* all that it is on sleeps */
-    bool late;           /* its anchors were pinned once their body was built, and may be others soon (world/tethers.c) */
+    bool asleep; /* all that it is on sleeps */
+    bool late;   /* its anchors were pinned once their body was built, and may be others soon (world/tethers.c) */
     const double *bound; /* of the stretch: 0.05 lets it grow by 5 % */
     sk_limit_order order;
     size_t count;
@@ -50,9 +50,8 @@ typedef struct sk_limit {
     /* by slot, from first_slot on (a multiple of 16) */
     size_t first_slot, slot_count;
     real *slot_length; /* slot_count x anchors, in blocks */
-    bool *empty; /* for each block: no particle in it is tethered */
-    uint32_t
-        *pin_of; /* places in `pins`: anchors of them where they are shared, else slot_count x anchors, in blocks */
+    bool *empty;       /* for each block: no particle in it is tethered */
+    uint32_t *pin_of; /* places in `pins`: anchors of them where they are shared, else slot_count x anchors, in blocks */
     /* of the present step */
     sk_anchor *pins; /* each anchor once; the first stands for none */
     size_t pin_count;

@@ -261,7 +261,8 @@ bool sk_limit_arrange(sk_limit *limit, sk_allocator *allocator, const sk_particl
         sk_allocate(allocator, (limit->shared ? anchors : limit->slot_count * anchors) * sizeof *limit->pin_of);
     limit->empty = sk_allocate(allocator, limit->slot_count / SK_LANES * sizeof *limit->empty);
     uint32_t *place_of = sk_allocate(allocator, particles->count * sizeof *place_of);
-    bool good = limit->slot_length && limit->empty && limit->pin_of && place_of && list_pins(limit, allocator, particles, place_of);
+    bool good = limit->slot_length && limit->empty && limit->pin_of && place_of &&
+                list_pins(limit, allocator, particles, place_of);
     if (good) fill_blocks(limit, particles, place_of);
     sk_release(allocator, place_of);
     return good;

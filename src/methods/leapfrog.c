@@ -49,8 +49,7 @@ static void amplify(double z, double zeta, double matrix[4]) {
 }
 
 const sk_method_type sk_leapfrog = {
-    .kind = {"leapfrog",
-             "half a kick, a drift, half a kick: second order, keeps energy; the choice for undamped motion",
+    .kind = {"leapfrog", "half a kick, a drift, half a kick: second order, keeps energy; the choice for undamped motion",
              SKEIN_METHOD, fields, sizeof fields / sizeof *fields, sizeof(sk_substeps)},
     .write = write,
     .substeps = sk_substeps_of,

@@ -15,9 +15,10 @@ typedef struct pbd_params {
 } pbd_params;
 
 static const skein_field fields[] = {
-    SK_INT(pbd_params, substeps, "substeps", "", 10, 1, 100000,
-           "equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); "
-           "more is firmer and more exact"),
+    SK_INT(
+        pbd_params, substeps, "substeps", "", 10, 1, 100000,
+        "equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); "
+        "more is firmer and more exact"),
     SK_INT(pbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep, which share the stiffness; stiff ones come out stiffer"),
     SK_BOOL(

@@ -38,8 +38,8 @@ void sk_write_stage_time(sk_plan_builder *builder, double part) {
     builder->before_end = (1 - part) * builder->h;
 }
 
-static void add_combine(sk_plan_builder *builder, sk_op_kind kind, sk_vector dst, double a, sk_vector p,
-                        double b, sk_vector q) {
+static void add_combine(sk_plan_builder *builder, sk_op_kind kind, sk_vector dst, double a, sk_vector p, double b,
+                        sk_vector q) {
     sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_FREE,
                                .kernel = sk_op_types[kind].kernels->version[builder->isa],
@@ -114,7 +114,8 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
         [SK_CONTACT_PUSH] = {SK_OP_CONTACT_POSITION, &sk_contact_push, SK_X},
         [SK_CONTACT_UPDATE] = {SK_OP_CONTACT_UPDATE, &sk_contact_update, SK_X},
     };
-    bool updates = sort == SK_CONTACT_UPDATE, tells = (updates || sort == SK_CONTACT_PUSH) && sk_writes_meetings(builder);
+    bool updates = sort == SK_CONTACT_UPDATE,
+         tells = (updates || sort == SK_CONTACT_PUSH) && sk_writes_meetings(builder);
     const bool keeps = updates && sk_keeps_planes(builder);
     if (keeps) sk_write_forget_planes(builder);
     for (size_t i = 0; i < builder->rules->colliders.count; i++) {
@@ -143,7 +144,10 @@ void sk_write_contacts(sk_plan_builder *builder, sk_contact_sort sort) {
                     .order = SK_FREE,
                     .kernel = sorts[sort].kernels->version[builder->isa],
                     .dst = sorts[sort].dst,
-                    .source = {SK_X, updates ? SK_X0 : SK_NONE, updates ? SK_V0 : sort == SK_CONTACT_FORCE ? SK_NONE : SK_X0},
+                    .source = {SK_X, updates ? SK_X0 : SK_NONE,
+                               updates                    ? SK_V0
+                               : sort == SK_CONTACT_FORCE ? SK_NONE
+                                                          : SK_X0},
                     .rule = collider,
                     .label = collider->label,
                     .also_reads = updates && sk_contact_reads_force(collider) ? 1u << SK_F : 0,

@@ -49,7 +49,7 @@ typedef struct sk_plan_builder {
     double before_end;  /* how long before the end of the substep X is now, s */
     size_t substep;     /* the place of the substep's repeat */
     const bool *strained; /* ops that are added now run only where that is so; NULL: always */
-    bool no_memory;     /* the plan is incomplete */
+    bool no_memory;       /* the plan is incomplete */
 } sk_plan_builder;
 
 /* Opens a repeat of `times` substeps of `h` seconds; sk_write_end closes it. Returns its place. */
@@ -130,7 +130,7 @@ typedef enum sk_meeting_sort {
     SK_MEETING_PUSH,
     SK_MEETING_PUSH_ON,
     SK_MEETING_LEAD,
-    SK_MEETING_FACES, /* from here on they ask where the substep began */
+    SK_MEETING_FACES,       /* from here on they ask where the substep began */
     SK_MEETING_FACES_AGAIN, /* those that were found where the last substep ended */
     SK_MEETING_BOUND
 } sk_meeting_sort;
@@ -150,8 +150,9 @@ void sk_write_forget_planes(sk_plan_builder *builder);
 void sk_add_op(sk_plan_builder *builder, sk_op op);
 /* Adds a sweep's op, run in each `every`-th substep; `coefficient` is the number of ops that share the stiffness, or how far a limit goes beyond
  * its bound. */
-void sk_add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind, const sk_sweep_kernels *kernels, sk_vector dst,
-                  sk_vector second, double coefficient, size_t every, sk_op_while during, const bool *strained);
+void sk_add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind,
+                  const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient, size_t every,
+                  sk_op_while during, const bool *strained);
 /* Whether something bounds a batch's elements; whether tethers are kept, and whether they go with coarse grids; and adds their op. */
 bool sk_batch_has_bound(const sk_batch *batch);
 bool sk_limit_is_kept(const sk_limit *limit);

@@ -9,8 +9,9 @@ static bool keeps_multiplier(const sk_batch *batch, int passes) {
     return (passes > 1 && !rigid) || sk_batch_damping_time(batch) > 0;
 }
 
-void sk_add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind, const sk_sweep_kernels *kernels, sk_vector dst,
-                  sk_vector second, double coefficient, size_t every, sk_op_while during, const bool *strained) {
+void sk_add_sweep(sk_plan_builder *builder, const sk_sweep *sweep, sk_half half, sk_op_kind kind,
+                  const sk_sweep_kernels *kernels, sk_vector dst, sk_vector second, double coefficient, size_t every,
+                  sk_op_while during, const bool *strained) {
     const sk_kernels *walk = sweep->strips ? &kernels->strips : &kernels->groups;
     sk_add_op(builder, (sk_op){.kind = kind,
                                .order = SK_ORDERED,
@@ -130,7 +131,8 @@ static void add_carry(sk_plan_builder *builder, const sk_kernels *kernels, const
 }
 
 /* An op of an aggregate, which has one element. */
-static void add_aggregate_op(sk_plan_builder *builder, const sk_kernels *kernels, const sk_aggregate *aggregate, const char *label) {
+static void add_aggregate_op(sk_plan_builder *builder, const sk_kernels *kernels, const sk_aggregate *aggregate,
+                             const char *label) {
     sk_add_op(builder, (sk_op){.kind = SK_OP_LIMIT,
                                .order = SK_ORDERED,
                                .kernel = kernels->version[builder->isa],
@@ -171,7 +173,8 @@ static void write_tethers(sk_plan_builder *builder, sk_limit_order order) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->limits.count; i++) {
         const sk_limit *limit = rules->limits.data[i];
-        if (sk_limit_is_kept(limit) && limit->order == order && sk_limit_has_coarse(builder, limit)) sk_add_limit(builder, limit, SK_NONE);
+        if (sk_limit_is_kept(limit) && limit->order == order && sk_limit_has_coarse(builder, limit))
+            sk_add_limit(builder, limit, SK_NONE);
     }
 }
 
@@ -209,7 +212,7 @@ static void write_batch_every(sk_plan_builder *builder, const sk_batch *batch, b
         sk_half half = whole ? SK_WHOLE : back ? SK_ODD_HALF : SK_EVEN_HALF;
         if (back && half == SK_WHOLE) continue;
         sk_add_sweep(builder, sweep, half, SK_OP_PROJECT, keeps ? &batch->type->project_damped : &batch->type->project,
-                  SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every, during, NULL);
+                     SK_X, keeps ? SK_X0 : SK_NONE, coefficient, every, during, NULL);
     }
 }
 

@@ -5,7 +5,15 @@
 #include "constraints/sweep.h"
 #include "methods/plan_builder.h"
 
-enum { LEAST_LIMIT_SWEEPS = 16, MOST_LIMIT_SWEEPS = 64, EDGES_A_SWEEP = 3, LEAST_HELD = 8, LEAST_MORE = 4, MOST_MORE = 32, EDGES_A_MORE = 6 };
+enum {
+    LEAST_LIMIT_SWEEPS = 16,
+    MOST_LIMIT_SWEEPS = 64,
+    EDGES_A_SWEEP = 3,
+    LEAST_HELD = 8,
+    LEAST_MORE = 4,
+    MOST_MORE = 32,
+    EDGES_A_MORE = 6
+};
 
 /* From side to side of a sheet: of triangles, it has three edges a vertex. */
 static double edges_across(const sk_batch *batch) {
@@ -27,8 +35,8 @@ static int limit_sweeps_of(const sk_batch *batch) {
 static const double beyond = 1.8;
 
 /* A sweep over a batch's bound. */
-static void add_limit_sweep(sk_plan_builder *builder, const sk_batch *batch, const sk_sweep *sweep, sk_vector velocity, double far,
-                            const bool *strained) {
+static void add_limit_sweep(sk_plan_builder *builder, const sk_batch *batch, const sk_sweep *sweep, sk_vector velocity,
+                            double far, const bool *strained) {
     const sk_sweep_kernels *kernels = velocity == SK_NONE ? &batch->type->limit : &batch->type->limit_moving;
     sk_add_sweep(builder, sweep, SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, far, 0, SK_ALWAYS, strained);
 }
@@ -46,7 +54,8 @@ static void write_first_limits(sk_plan_builder *builder, sk_vector velocity) {
         if (!sk_batch_has_bound(batch) || sk_batch_carries(batch)) continue;
         if (batch->only_bounds && velocity == SK_NONE) continue; // write_spans() has written them
         for (size_t w = 0; w < batch->sweep_count; w++)
-            if (batch->only_bounds || batch->sweeps[w].strips) add_limit_sweep(builder, batch, &batch->sweeps[w], velocity, 1, NULL);
+            if (batch->only_bounds || batch->sweeps[w].strips)
+                add_limit_sweep(builder, batch, &batch->sweeps[w], velocity, 1, NULL);
     }
 }
 
@@ -60,7 +69,8 @@ static int most_limit_sweeps(const sk_rules *rules) {
 
 /* Adds an op over slots for those of a batch, while its edges are strained: what else there is must not know of that. */
 static void add_op_for(sk_plan_builder *builder, const sk_batch *batch, sk_op op) {
-    const size_t first = batch->first_slot > op.begin ? batch->first_slot : op.begin, end = batch->end_slot < op.end ? batch->end_slot : op.end;
+    const size_t first = batch->first_slot > op.begin ? batch->first_slot : op.begin,
+                 end = batch->end_slot < op.end ? batch->end_slot : op.end;
     op.strained = &batch->strained;
     if (first < end) sk_add_op(builder, first == 0 && end == builder->slot_count ? op : sk_op_for(op, first, end));
 }
@@ -68,31 +78,34 @@ static void add_op_for(sk_plan_builder *builder, const sk_batch *batch, sk_op op
 bool sk_keeps_planes(const sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     bool any = false;
-    for (size_t i = 0; i < rules->batches.count; i++) any |= limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i]);
+    for (size_t i = 0; i < rules->batches.count; i++)
+        any |= limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i]);
     return any && builder->predicted && sk_writes_contacts(rules) && !sk_writes_meetings(builder);
 }
 
 /* Nobody is held; if `first`, where a step begins. */
 static void forget_planes(sk_plan_builder *builder, const sk_batch *batch, bool first) {
-    add_op_for(builder, batch, (sk_op){.kind = SK_OP_LIMIT,
-                                       .order = SK_FREE,
-                                       .kernel = sk_contact_let_go,
-                                       .dst = SK_SUPPORT,
-                                       .coefficient = {first},
-                                       .label = "let go",
-                                       .end = builder->slot_count});
+    add_op_for(builder, batch,
+               (sk_op){.kind = SK_OP_LIMIT,
+                       .order = SK_FREE,
+                       .kernel = sk_contact_let_go,
+                       .dst = SK_SUPPORT,
+                       .coefficient = {first},
+                       .label = "let go",
+                       .end = builder->slot_count});
 }
 
 void sk_write_forget_planes(sk_plan_builder *builder) {
     const sk_rules *rules = builder->rules;
     for (size_t i = 0; i < rules->batches.count; i++)
-        if (limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i])) forget_planes(builder, rules->batches.data[i], false);
+        if (limits_strain(rules->batches.data[i]) || sk_batch_is_firm(rules->batches.data[i]))
+            forget_planes(builder, rules->batches.data[i], false);
 }
 
 /* Finds who is pushed out by colliders, but does not bounce, and where to: then he may be held there while sweeps go on. */
 static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
     const sk_rules *rules = builder->rules;
-    const bool known = sk_keeps_planes(builder); // from the second substep on
+    const bool known = sk_keeps_planes(builder);                            // from the second substep on
     if (!sk_writes_meetings(builder)) forget_planes(builder, batch, known); // else contact of surfaces does
     for (size_t i = 0; i < rules->colliders.count; i++) {
         const sk_collider *collider = rules->colliders.data[i];
@@ -119,14 +132,15 @@ static void write_find_held(sk_plan_builder *builder, const sk_batch *batch) {
 
 /* With friction, for velocities are made of positions afterwards. */
 static void write_hold(sk_plan_builder *builder, const sk_batch *batch) {
-    add_op_for(builder, batch, (sk_op){.kind = SK_OP_LIMIT,
-                                       .order = SK_FREE,
-                                       .kernel = sk_contact_hold.version[builder->isa],
-                                       .dst = SK_X,
-                                       .source = {SK_SUPPORT, SK_T0, SK_T1},
-                                       .also_reads = 1u << SK_X0,
-                                       .label = "held by colliders",
-                                       .end = builder->slot_count});
+    add_op_for(builder, batch,
+               (sk_op){.kind = SK_OP_LIMIT,
+                       .order = SK_FREE,
+                       .kernel = sk_contact_hold.version[builder->isa],
+                       .dst = SK_X,
+                       .source = {SK_SUPPORT, SK_T0, SK_T1},
+                       .also_reads = 1u << SK_X0,
+                       .label = "held by colliders",
+                       .end = builder->slot_count});
 }
 
 /* Between sweeps colliders hold whom they hold up, and now and then surfaces push apart what is near. Where a few vertices lie on a
@@ -157,7 +171,8 @@ static int more_sweeps_of(const sk_rules *rules) {
     double most = 0;
     for (size_t i = 0; i < rules->batches.count; i++) {
         const sk_batch *batch = rules->batches.data[i];
-        if (sk_batch_is_firm(batch)) most = fmax(most, fmin(fmax(edges_across(batch) / EDGES_A_MORE, LEAST_MORE), MOST_MORE));
+        if (sk_batch_is_firm(batch))
+            most = fmax(most, fmin(fmax(edges_across(batch) / EDGES_A_MORE, LEAST_MORE), MOST_MORE));
     }
     return (int)most;
 }
@@ -201,10 +216,12 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity) {
             const int own = limits_strain(batch) ? turn - most + limit_sweeps_of(batch) : -1;
             for (size_t w = 0; own >= 0 && w < batch->sweep_count; w++) {
                 const bool always = own == 0 && !batch->sweeps[w].strips;
-                add_limit_sweep(builder, batch, &batch->sweeps[w], velocity, own ? beyond : 1, always ? NULL : &batch->strained);
+                add_limit_sweep(builder, batch, &batch->sweeps[w], velocity, own ? beyond : 1,
+                                always ? NULL : &batch->strained);
             }
         }
-        if (turn >= alone) write_pushes(builder, limits_strain, false, turn + 1 < most && (most - turn) % SWEEPS_A_PUSH == 0);
+        if (turn >= alone)
+            write_pushes(builder, limits_strain, false, turn + 1 < most && (most - turn) % SWEEPS_A_PUSH == 0);
     }
 }
 

@@ -32,8 +32,8 @@ void sk_write_meetings(sk_plan_builder *builder, sk_meeting_sort sort, sk_vector
         if (!sk_meets(force)) continue;
         const sk_meeting *meeting = force->type->meeting;
         const bool asks = sort >= SK_MEETING_FACES && keeps_start(builder);
-        const sk_kernels *kernels[] = {&meeting->begin, &meeting->hold, &meeting->push, &meeting->push_on, &meeting->lead,
-                                       &meeting->faces, &meeting->faces, &meeting->bound};
+        const sk_kernels *kernels[] = {&meeting->begin, &meeting->hold,  &meeting->push,  &meeting->push_on,
+                                       &meeting->lead,  &meeting->faces, &meeting->faces, &meeting->bound};
         sk_add_op(builder, (sk_op){.kind = SK_OP_MEET,
                                    .order = SK_ORDERED,
                                    .kernel = kernels[sort]->version[builder->isa],

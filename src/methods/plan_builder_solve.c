@@ -132,8 +132,7 @@ void sk_write_factor(sk_plan_builder *builder, sk_vector diagonal, sk_vector off
     add_call(builder, sk_matrix_clear, SK_NONE, diagonal, off, "A: particles");
     add_batches(builder, (sk_op){.kind = SK_OP_LINEARISE, .source = {SK_X}, .coefficient = {a, b}},
                 offsetof(sk_constraint_type, blocks));
-    add_call(builder, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1,
-             "L L^T of S A S + 1 - S");
+    add_call(builder, sk_matrix_factor, SK_NONE, (sk_vector)SK_FILTER0, (sk_vector)SK_FILTER1, "L L^T of S A S + 1 - S");
 }
 
 void sk_write_factor_solve(sk_plan_builder *builder, sk_vector dst, sk_vector p) {

@@ -9,9 +9,10 @@ typedef struct xpbd_params {
 } xpbd_params;
 
 static const skein_field fields[] = {
-    SK_INT(xpbd_params, substeps, "substeps", "", 10, 1, 100000,
-           "equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); "
-           "more is firmer and more exact"),
+    SK_INT(
+        xpbd_params, substeps, "substeps", "", 10, 1, 100000,
+        "equal parts that a step is cut into, fewer where steps get shorter, more where contact is fast (more_substeps); "
+        "more is firmer and more exact"),
     SK_INT(xpbd_params, iterations, "iterations", "", 1, 1, 1000,
            "passes over the constraints in a substep; more substeps are better spent"),
 };

@@ -7,7 +7,9 @@ typedef struct attach_params {
 } attach_params;
 
 static const skein_field fields[] = {
-    SK_TEXT(attach_params, to, "to", "", "the name of the mesh collider, or empty where there is one: each is tied to the triangle that is nearest where both were built"),
+    SK_TEXT(
+        attach_params, to, "to", "",
+        "the name of the mesh collider, or empty where there is one: each is tied to the triangle that is nearest where both were built"),
     SK_REAL(attach_params, offset, "offset", "m", SK_UNBOUNDED, -SK_FAR, SK_UNBOUNDED,
             "how far off the nearest point, along the triangle's normal; infinite: there where it was built"),
 };
@@ -26,8 +28,8 @@ static void move(const sk_motion *motion, size_t i, double time, double place[3]
 }
 
 const sk_motion_type sk_attach = {
-    .kind = {"attach", "leads pins with the nearest triangles of a mesh collider, however it moves", SKEIN_MOTION, fields,
-             sizeof fields / sizeof *fields, sizeof(attach_params)},
+    .kind = {"attach", "leads pins with the nearest triangles of a mesh collider, however it moves", SKEIN_MOTION,
+             fields, sizeof fields / sizeof *fields, sizeof(attach_params)},
     .move = move,
     .carrier = carrier,
 };

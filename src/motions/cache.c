@@ -13,8 +13,7 @@ static const skein_field fields[] = {
     SK_TEXT(cache_params, file, "file", "",
             "a PC2 point cache with as many points as the body has vertices, particles or pins (in scenes; a program "
             "passes the places itself)"),
-    SK_REAL(cache_params, fps, "fps", "1/s", 60, 1e-3, 1e6,
-            "frames a second in the file (a program says its interval)"),
+    SK_REAL(cache_params, fps, "fps", "1/s", 60, 1e-3, 1e6, "frames a second in the file (a program says its interval)"),
     SK_BOOL(cache_params, repeat, "repeat", 0, "true: from the last sample it goes on with the first, again and again"),
 };
 

@@ -55,9 +55,10 @@ static skein_status read_table(const char *text, key_table *table, skein_error *
         double *key = table->key[table->count];
         int count = read_row(at, end, key);
         if (count != SHORT_KEY && count != KEY)
-            return sk_fail(error, SKEIN_ERROR_VALUE, "keys",
-                           "key %zu: expected a time and 3 numbers (a shift), or 6 (and a turn), as in 0 0 0 0, 1.5 0 0.2 0, not '%.*s'",
-                           table->count, (int)(end - at < 60 ? end - at : 60), at);
+            return sk_fail(
+                error, SKEIN_ERROR_VALUE, "keys",
+                "key %zu: expected a time and 3 numbers (a shift), or 6 (and a turn), as in 0 0 0 0, 1.5 0 0.2 0, not '%.*s'",
+                table->count, (int)(end - at < 60 ? end - at : 60), at);
         if (table->count && !(key[0] > key[-KEY]))
             return sk_fail(error, SKEIN_ERROR_VALUE, "keys", "key %zu: its time, %g s, is not after the one before it",
                            table->count, key[0]);

@@ -81,7 +81,8 @@ const skein_field *sk_motion_refused(const sk_motion_type *type, const sk_motion
 /* Whether a jump is set for a time after `from`, up to `to` (s after the start). */
 bool sk_motion_jumps(const sk_motion_common *common, double from, double to);
 /* Reads up to `most` numbers of the map, and counts all; fails if it holds anything else. */
-skein_status sk_motion_read_map(const sk_motion_common *common, double *share, size_t most, size_t *count, skein_error *error);
+skein_status sk_motion_read_map(const sk_motion_common *common, double *share, size_t most, size_t *count,
+                                skein_error *error);
 skein_status sk_motion_check_jumps(const sk_motion_common *common, skein_error *error);
 
 /* Fields of sk_motion_common. */

@@ -21,8 +21,7 @@ skein_status skein_build_particles(skein_builder *builder, size_t count, const d
     if (builder->count) return skein_build_fail(builder, "", "a body's particles are built once");
     if (count && (!positions || !masses)) return sk_fail_null(builder->error, positions ? "masses" : "positions");
     sk_body *body = builder->body;
-    skein_status status =
-        sk_world_add_particles(builder->world, count, positions, velocities, masses, builder->error);
+    skein_status status = sk_world_add_particles(builder->world, count, positions, velocities, masses, builder->error);
     if (status) return status;
     body->particle_of_vertex = sk_allocate(&builder->world->allocator, (count + 1) * sizeof *body->particle_of_vertex);
     if (!body->particle_of_vertex) return sk_fail_memory(builder->error, "a body");

@@ -32,7 +32,8 @@ static skein_status lay_fields(sk_outside *outside, sk_allocator *allocator, con
         const skein_field *same = sk_field_named(base->fields, base->field_count, kind->fields[f].name);
         fields[f] = kind->fields[f];
         if (fields[f].type != SKEIN_FIELD_REAL)
-            return sk_fail(error, SKEIN_ERROR_VALUE, fields[f].name, "a field that a formula names is a SKEIN_FIELD_REAL");
+            return sk_fail(error, SKEIN_ERROR_VALUE, fields[f].name,
+                           "a field that a formula names is a SKEIN_FIELD_REAL");
         if (same && same->type == SKEIN_FIELD_REAL && !is_hidden(outside, same, text_field)) {
             fields[f].offset = same->offset;
             continue;

@@ -1,6 +1,6 @@
 /* Registered colliders by functions: one call for each point, in the collider's own frame. */
-#include "base/kernels.h"
 #include "colliders/collider.h"
+#include "base/kernels.h"
 
 #define SK_UNIT outside_collider
 SK_KERNELS(sk_probe, probe);

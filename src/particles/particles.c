@@ -52,7 +52,9 @@ static bool reserve(sk_particles *particles, sk_allocator *allocator, size_t par
         size_t old = particles->slot_capacity, room = room_for(old, slot_need);
         // temporaries, too: if there is no memory, the plan that named them is run on
         for (int v = SK_X; v < SK_VECTOR_COUNT; v++)
-            if ((v < SK_T0 || particles->vector[v]) && !grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4))) return false;
+            if ((v < SK_T0 || particles->vector[v]) &&
+                !grow(allocator, (void **)&particles->vector[v], old, room, sizeof(sk_vec4)))
+                return false;
         if (!grow(allocator, (void **)&particles->particle_of, old, room, sizeof(uint32_t))) return false;
         particles->slot_capacity = room;
     }
@@ -102,8 +104,7 @@ uint32_t sk_strip_width(uint32_t columns) {
     return width < LEAST_WIDTH ? LEAST_WIDTH : width;
 }
 
-bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips,
-                             const uint32_t *place) {
+bool sk_particles_add_strips(sk_particles *particles, sk_allocator *allocator, sk_strips strips, const uint32_t *place) {
     if (!SK_RESERVE(allocator, &particles->strips, particles->strips.count + 1)) return false;
     strips.width = sk_strip_width(strips.columns);
     for (uint32_t i = 0; i < strips.count; i++) particles->place[strips.first_particle + i] = place ? place[i] : i;

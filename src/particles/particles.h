@@ -52,10 +52,10 @@ typedef struct sk_particles {
     sk_vec4 *vector[SK_VECTOR_COUNT]; /* slots; SK_NONE is unused, temporaries may be NULL */
     uint32_t *slot_of;
     uint32_t *particle_of; /* slots; SK_NOBODY in empty ones */
-    uint32_t *place; /* of particles in strips: row x columns + column in their grid */
-    uint32_t *rank;  /* a particle's place in the order of slots outside of strips; its index by default */
-    sk_vec3 *built;  /* positions as they were built, user's order */
-    real *mass;      /* kg, user's order; 0 for one that was built as pinned */
+    uint32_t *place;       /* of particles in strips: row x columns + column in their grid */
+    uint32_t *rank;        /* a particle's place in the order of slots outside of strips; its index by default */
+    sk_vec3 *built;        /* positions as they were built, user's order */
+    real *mass;            /* kg, user's order; 0 for one that was built as pinned */
     bool *pinned;
     uint8_t *presence; /* an sk_presence */
     struct {

@@ -61,7 +61,8 @@ static skein_status choose_in_box_or_sphere(const selector *s, const char *part)
 static skein_status read_index(const selector *s, const char *at, char **end, size_t *index) {
     long long most = (long long)s->of->number_count, number = strtoll(at, end, 10);
     bool ends = !**end || isspace((unsigned char)**end) || !strncmp(*end, "..", 2);
-    if (*end == at || !ends) return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected whole numbers", at);
+    if (*end == at || !ends)
+        return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected whole numbers", at);
     long long from_start = number < 0 ? number + most : number;
     if (from_start < 0 || from_start >= most)
         return sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "%s %lld is out of range: %s has %lld, 0 to %lld",
@@ -82,7 +83,8 @@ static skein_status choose_by_number(const selector *s, const char *part) {
         bool span = !status && !strncmp(end, "..", 2);
         if (span) status = read_index(s, end + 2, &end, &last);
         if (!status && ((span && last < first) || (*end && !isspace((unsigned char)*end))))
-            status = sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected a first number .. a last one", at);
+            status =
+                sk_fail(s->error, SKEIN_ERROR_VALUE, s->where, "'%.40s': expected a first number .. a last one", at);
         if (status) return status;
         for (size_t i = first; i <= last; i++)
             s->chosen[s->of->particle_of_number ? s->of->particle_of_number[i] : i] = true;

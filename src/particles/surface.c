@@ -142,8 +142,8 @@ bool sk_surface_arrange(sk_surface *surface, sk_allocator *allocator, const sk_p
     sk_surface_release(surface, allocator);
     if (!triangles->count) return true;
     size_t *filled = sk_allocate(allocator, (particles->strips.count + 1) * sizeof *filled);
-    bool good = filled && make_patches(surface, allocator, particles) &&
-                deal(surface, allocator, particles, triangles, filled);
+    bool good =
+        filled && make_patches(surface, allocator, particles) && deal(surface, allocator, particles, triangles, filled);
     if (good && drop_thin_patches(surface, allocator, particles, filled))
         good = deal(surface, allocator, particles, triangles, filled);
     sk_release(allocator, filled);
@@ -162,7 +162,8 @@ size_t sk_surface_rest_from(const sk_surface *surface, size_t number) {
 }
 
 void sk_surface_release(sk_surface *surface, sk_allocator *allocator) {
-    for (size_t i = 0; i < surface->patch_count && surface->patches; i++) sk_release(allocator, surface->patches[i].has);
+    for (size_t i = 0; i < surface->patch_count && surface->patches; i++)
+        sk_release(allocator, surface->patches[i].has);
     sk_release(allocator, surface->patches);
     sk_release(allocator, surface->rest.corner);
     sk_release(allocator, surface->number);

@@ -164,7 +164,8 @@ void SK_KERNEL(pull)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     for (size_t slot = begin; slot < end; slot += SK_PART) {
         bool packed = slot < op->packed;
         sk_wide4 v = sk_load_part(run->vector[SK_V], slot, packed);
-        sk_store_moved(run->vector[SK_V], slot, packed, pulled(&pull, sk_load_part(run->vector[SK_X], slot, packed).w, v));
+        sk_store_moved(run->vector[SK_V], slot, packed,
+                       pulled(&pull, sk_load_part(run->vector[SK_X], slot, packed).w, v));
     }
 }
 
@@ -172,7 +173,8 @@ void SK_KERNEL(pull)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 /* Both uniform predictions over quads [begin, end) as they lie: converting them to x, y, z, w and back was most of the
  * work. If `corrects`, a (X - X0) is added to the velocity first; the `last` iteration does only that. Both flags are
  * constants where this is inlined: testing them for each vector took as long as half its arithmetic. */
-SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool corrects, bool last) {
+SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size_t end, real a, bool corrects,
+                                bool last) {
     const bool saves_v = op->source[2] == SK_V0, saves_end = op->source[2] == SK_X;
     const uniform_pull p = pull_of(op);
     const sk_wide acceleration = sk_each_quad(p.a.x, p.a.y, p.a.z), force = sk_each_quad(p.f.x, p.f.y, p.f.z);
@@ -182,7 +184,8 @@ SK_INLINE void predict_in_quads(sk_run *run, const sk_op *op, size_t begin, size
         sk_wide x = x_of[i], v = v_of[i];
         if (corrects) v = sk_with_fourth(v + a * (x - x0_of[i]), v);
         if (!last) {
-            sk_wide w = sk_fourth_of_each(x), k = sk_keep(sk_positive(w), sk_splat(p.h)), pull = acceleration, drag = sk_splat(p.rate);
+            sk_wide w = sk_fourth_of_each(x), k = sk_keep(sk_positive(w), sk_splat(p.h)), pull = acceleration,
+                    drag = sk_splat(p.rate);
             if (!p.by_mass) pull = acceleration + force * w, drag = p.rate + p.linear * w;
             v = sk_with_fourth(v + k * (pull - drag * v), v);
         }

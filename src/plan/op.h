@@ -38,7 +38,7 @@ typedef enum sk_vector {
     SK_T9,
     SK_T10,
     SK_T11,
-    SK_S, /* steering: a change of velocity, and in w how much more speed is allowed; also a temporary */
+    SK_S,       /* steering: a change of velocity, and in w how much more speed is allowed; also a temporary */
     SK_SUPPORT, /* where surfaces meet each other and colliders: the unit normal of who pushed last in this substep, or 0 */
     SK_VECTOR_COUNT
 } sk_vector;
@@ -61,7 +61,7 @@ typedef enum sk_op_kind {
     SK_OP_PASS, /* a solve's other arithmetic on vectors; its label says which */
     SK_OP_SORT, /* the first op of a sort, and those that continue it */
     SK_OP_SORT_ON,
-    SK_OP_FIELD, /* forces on particles: those that add to F, */
+    SK_OP_FIELD,    /* forces on particles: those that add to F, */
     SK_OP_STEERING, /* those that steer, */
     SK_OP_AVOID,    /* and those that steer away from a collider */
     SK_OP_NEIGHBOUR,
@@ -143,19 +143,19 @@ struct sk_run {
     const sk_surface *surface;
     sk_cells *cells;
     sk_allocator *allocator;
-    double time;              /* at the end of the present substep, s */
-    struct sk_solve *solve;   /* what a solve and its ops share (plan/solve.h) */
-    struct sk_matrix *matrix; /* of a solve with a factor (plan/matrix.h), else NULL */
-    void (*ops)(sk_run *run, const sk_op *ops, size_t count);    /* for solves: runs ops of the same plan, */
-    struct sk_tasks *tasks;                                      /* on these threads */
-    double *seconds;          /* for each op from `timed` on, its time is added here; NULL: not measured */
+    double time;                                              /* at the end of the present substep, s */
+    struct sk_solve *solve;                                   /* what a solve and its ops share (plan/solve.h) */
+    struct sk_matrix *matrix;                                 /* of a solve with a factor (plan/matrix.h), else NULL */
+    void (*ops)(sk_run *run, const sk_op *ops, size_t count); /* for solves: runs ops of the same plan, */
+    struct sk_tasks *tasks;                                   /* on these threads */
+    double *seconds; /* for each op from `timed` on, its time is added here; NULL: not measured */
     const sk_op *timed;
-    size_t iteration;              /* of the innermost repeat, from 0 on, */
-    bool last_iteration;           /* and whether it is the last */
-    bool strained;                 /* when the step began some edge was near its bound (world/strained.c) */
-    bool near;                     /* surfaces are near each other in this substep, */
-    double near_at;                /* which ends at this time */
-    bool no_memory;           /* an allocation failed: so will the step */
+    size_t iteration;    /* of the innermost repeat, from 0 on, */
+    bool last_iteration; /* and whether it is the last */
+    bool strained;       /* when the step began some edge was near its bound (world/strained.c) */
+    bool near;           /* surfaces are near each other in this substep, */
+    double near_at;      /* which ends at this time */
+    bool no_memory;      /* an allocation failed: so will the step */
 };
 
 typedef void sk_op_kernel(sk_run *run, const sk_op *op, size_t begin, size_t end);
@@ -172,11 +172,11 @@ typedef enum sk_rule_sort { SK_OTHER_RULE, SK_RULE_UNIFORM, SK_RULE_FORCE, SK_RU
 typedef enum sk_reverse {
     SK_REVERSE_NOT, /* not supported yet */
     SK_REVERSE_NOTHING,
-    SK_REVERSE_SUM, /* dst = a p + b q + c r */
-    SK_REVERSE_KICK, /* dst = p + a w q */
-    SK_REVERSE_FIELD, /* F += a force, if that is uniform */
+    SK_REVERSE_SUM,     /* dst = a p + b q + c r */
+    SK_REVERSE_KICK,    /* dst = p + a w q */
+    SK_REVERSE_FIELD,   /* F += a force, if that is uniform */
     SK_REVERSE_ELASTIC, /* F += a sweep of constraints */
-    SK_REVERSE_SOLVE, /* an implicit solve, as a whole */
+    SK_REVERSE_SOLVE,   /* an implicit solve, as a whole */
     SK_REVERSE_BY_SOLVE /* an op within a solve, which the solve stands for */
 } sk_reverse;
 
@@ -232,28 +232,28 @@ struct sk_op {
     sk_op_kernel *kernel; /* NULL for a repeat or a part; a solve's runs on the thread that runs the plan */
     sk_vector dst, source[3];
     double coefficient[3];
-    double dt;             /* of the substep, s */
-    double before_end;     /* how long before the end of the substep the state that it reads is, s */
-    const void *rule;      /* a force, a collider, a batch */
-    const sk_patch *patch; /* of triangles in strips, else NULL */
-    const sk_group *group, *seen; /* particles that it moves or sorts, and those that it reads; NULL: all */
+    double dt;                        /* of the substep, s */
+    double before_end;                /* how long before the end of the substep the state that it reads is, s */
+    const void *rule;                 /* a force, a collider, a batch */
+    const sk_patch *patch;            /* of triangles in strips, else NULL */
+    const sk_group *group, *seen;     /* particles that it moves or sorts, and those that it reads; NULL: all */
     uint32_t also_reads, also_writes; /* bits of vectors, besides those of its kind */
-    const char *label;     /* its name in `skein explain` */
-    sk_op_kernel *inner;  /* the kernel of an op over some slots only, whose `kernel` is sk_run_partly */
-    size_t first_slot, end_slot; /* of such an op, within [begin, end); else 0 */
-    size_t begin, end;     /* elements; a repeat: the number of iterations is `end` */
-    bool sets;             /* a field op: F is written, not added to */
-    bool by_particle;      /* its elements are the user's particles, not slots: it cannot run in chunks with others */
-    bool alone;            /* it reads slots other than its own: it cannot either */
+    const char *label;                /* its name in `skein explain` */
+    sk_op_kernel *inner;              /* the kernel of an op over some slots only, whose `kernel` is sk_run_partly */
+    size_t first_slot, end_slot;      /* of such an op, within [begin, end); else 0 */
+    size_t begin, end;                /* elements; a repeat: the number of iterations is `end` */
+    bool sets;                        /* a field op: F is written, not added to */
+    bool by_particle;     /* its elements are the user's particles, not slots: it cannot run in chunks with others */
+    bool alone;           /* it reads slots other than its own: it cannot either */
     bool from_prediction; /* it reads X0 only for X0 + b V, b being its second coefficient: 0 if X0 holds that sum */
-    size_t every;          /* it runs in every `every`-th iteration of its repeat, and in the last; 0: in all */
-    sk_op_while during;    /* and, unless SK_ALWAYS, only while surfaces are near each other, or only while not; */
-    const bool *strained;  /* and, unless NULL, only in steps that begin with edges near their bounds */
-    size_t packed;         /* slots [0, packed) are in packed blocks when it runs */
-    sk_walk walk;          /* of ops whose elements are strip rows */
-    sk_half half;          /* of a sweep along strips */
-    size_t length;         /* of a repeat, a solve or a part: how many ops after it belong to it */
-    int part;              /* a part's number */
+    size_t every;         /* it runs in every `every`-th iteration of its repeat, and in the last; 0: in all */
+    sk_op_while during;   /* and, unless SK_ALWAYS, only while surfaces are near each other, or only while not; */
+    const bool *strained; /* and, unless NULL, only in steps that begin with edges near their bounds */
+    size_t packed;        /* slots [0, packed) are in packed blocks when it runs */
+    sk_walk walk;         /* of ops whose elements are strip rows */
+    sk_half half;         /* of a sweep along strips */
+    size_t length;        /* of a repeat, a solve or a part: how many ops after it belong to it */
+    int part;             /* a part's number */
 };
 
 /* The force m g + f - (linear + rate m) v on every particle: gravity, uniform wind and air drag together. Predictions

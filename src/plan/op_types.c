@@ -20,18 +20,18 @@ static const char *set_out(const sk_op *op) {
 }
 
 #define PULLED "    V.xyz = pulled@(X.w, V.xyz);\n"
-#define CONTACT_CALL                                                                                                     \
-    "vec4 probe@(vec3 x) {\n"                                                                                            \
-    "    sk_pose where = sk_pose(pose@[0].xyz, pose@[3].xyz, pose@[4].xyz, pose@[5].xyz, pose@[6].xyz);\n"                \
-    "    sk_contact contact = $k_probe(params@(), where, x);\n"                                                          \
+#define CONTACT_CALL                                                                                       \
+    "vec4 probe@(vec3 x) {\n"                                                                              \
+    "    sk_pose where = sk_pose(pose@[0].xyz, pose@[3].xyz, pose@[4].xyz, pose@[5].xyz, pose@[6].xyz);\n" \
+    "    sk_contact contact = $k_probe(params@(), where, x);\n"                                            \
     "    return vec4(contact.normal, contact.distance);\n}\n"
 #define CONTACT_FILES .shared = "colliders/response", .file = "colliders/contact"
-#define PUSH_CALL                                                                                                        \
-    "#define sum@ vec3\n"                                                                                                \
-    "vec3 start@(vec3 heading) { return vec3(0); }\n"                                                                    \
-    "void meet@(inout vec3 sum, vec3 apart, float square, vec3 direction) {\n"                                           \
-    "    if (square > 0) sum += $k_push(params@(), apart, sqrt(square));\n"                                              \
-    "}\n"                                                                                                                \
+#define PUSH_CALL                                                              \
+    "#define sum@ vec3\n"                                                      \
+    "vec3 start@(vec3 heading) { return vec3(0); }\n"                          \
+    "void meet@(inout vec3 sum, vec3 apart, float square, vec3 direction) {\n" \
+    "    if (square > 0) sum += $k_push(params@(), apart, sqrt(square));\n"    \
+    "}\n"                                                                      \
     "vec3 finish@(vec3 sum, float dt) { return sum; }\n"
 
 const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
@@ -58,8 +58,8 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
                     .card = {.statement = "    if (!(X.w > 0)) $d.xyz += op@[0].x * $q.xyz;\n"}},
     [SK_OP_PULL] = {"combine", &sk_combine_pull, "V + h ($u)", SK_RULE_UNIFORM, .arithmetic = true,
                     .reverse = SK_REVERSE_SUM, .reads = X | V, .writes = V},
-    [SK_OP_PREDICT] = {"combine", &sk_combine_predict, "X + h V, V + h w F; $o", .arithmetic = true,
-                       .reads = X | V | F, .writes = X | V | X0 | SK_USES_THIRD,
+    [SK_OP_PREDICT] = {"combine", &sk_combine_predict, "X + h V, V + h w F; $o", .arithmetic = true, .reads = X | V | F,
+                       .writes = X | V | X0 | SK_USES_THIRD,
                        .card = {.statement = "    V.xyz = V.xyz + op@[0].w * X.w * F.xyz;\n$o", .other = set_out}},
     [SK_OP_PREDICT_UNIFORM] = {"combine", &sk_combine_predict_uniform, "X + h V, V + h ($u); $o", SK_RULE_UNIFORM,
                                .arithmetic = true, .reads = X | V, .writes = X | V | X0 | SK_USES_THIRD,
@@ -70,8 +70,9 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
                                    SK_RULE_UNIFORM, .arithmetic = true, .reads = X | V | X0,
                                    .writes = X | V | X0 | SK_USES_THIRD,
                                    .card = {.statement = "    V.xyz = V.xyz + op@[0].x * (X.xyz - X0.xyz);\n"
-                                            "    if (!last_iteration) {\n" PULLED "$o    }\n",
-                                            .file = "gpu/pull", .other = set_out}},
+                                                         "    if (!last_iteration) {\n" PULLED "$o    }\n",
+                                            .file = "gpu/pull",
+                                            .other = set_out}},
     [SK_OP_REST] = {"combine", &sk_combine_rest, "$p, 0 where at most $1 m/s", .arithmetic = true,
                     .reverse = SK_REVERSE_NOTHING},
     [SK_OP_PASS] = {"combine", .arithmetic = true, .reverse = SK_REVERSE_BY_SOLVE},
@@ -79,26 +80,33 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
     /* ---- forces ---- */
     [SK_OP_SORT] = {"grid", .sorts = true, .reads = X | V},
     [SK_OP_SORT_ON] = {"grid", .goes_on = true, .reads = X | V},
-    [SK_OP_FIELD] = {"field", .rule = SK_RULE_FORCE, .reverse = SK_REVERSE_FIELD, .reads = X | V | SK_USES_DST,
-                     .writes = SK_USES_DST,
-                     .card = {.statement = "    $d.xyz $= force@(X.xyz, V.xyz, V.w);\n",
-                              .call = "vec3 force@(vec3 x, vec3 v, float mass) { return $k_force(params@(), $xv, mass); }\n"}},
+    [SK_OP_FIELD] =
+        {"field", .rule = SK_RULE_FORCE, .reverse = SK_REVERSE_FIELD, .reads = X | V | SK_USES_DST,
+         .writes = SK_USES_DST,
+         .card = {.statement = "    $d.xyz $= force@(X.xyz, V.xyz, V.w);\n",
+                  .call = "vec3 force@(vec3 x, vec3 v, float mass) { return $k_force(params@(), $xv, mass); }\n"}},
     [SK_OP_STEERING] = {"field", .rule = SK_RULE_FORCE, .reads = X | V | SK_USES_DST, .writes = SK_USES_DST,
                         .card = {.statement = "    $d += steer@(X.xyz, op@[0].w);\n",
                                  .call = "vec4 steer@(vec3 x, float dt) { return $k_steer(params@(), x, dt); }\n"}},
     [SK_OP_AVOID] = {"field", .rule = SK_RULE_COLLIDER, .reads = X | V | SK_USES_DST, .writes = SK_USES_DST,
                      .at_end = true,
-                     .card = {.statement = "    $d += avoid@(X.xyz, V.xyz);\n", .call = CONTACT_CALL, .shared = "colliders/avoid", .file = "colliders/look_ahead"}},
+                     .card = {.statement = "    $d += avoid@(X.xyz, V.xyz);\n",
+                              .call = CONTACT_CALL,
+                              .shared = "colliders/avoid",
+                              .file = "colliders/look_ahead"}},
     // pair formulas read the time at the end of the substep
     [SK_OP_NEIGHBOUR] = {"neighbour", .rule = SK_RULE_FORCE, .walks = true, .at_end = true,
                          .reads = X | V | SK_USES_DST, .writes = SK_USES_DST,
-                         .card = {.statement = "    $d.xyz += walk@(place, X.xyz, V.xyz);\n", .call = PUSH_CALL, .file = "gpu/walk"}},
+                         .card = {.statement = "    $d.xyz += walk@(place, X.xyz, V.xyz);\n",
+                                  .call = PUSH_CALL,
+                                  .file = "gpu/walk"}},
     [SK_OP_BOUND] = {"limit", .rule = SK_RULE_FORCE, .reads = X | V | SK_USES_THIRD, .writes = V,
                      .card = {.statement = "    V.xyz = bound@(X, V.xyz, $r, op@[0].w);\n",
                               .call = "vec3 bound@(vec4 x, vec3 v, vec4 steering, float dt) {\n"
-                              "    return $k_bound(params@(), x, v, steering, dt);\n}\n"}},
+                                      "    return $k_bound(params@(), x, v, steering, dt);\n}\n"}},
     [SK_OP_SHIFT] = {"limit", .rule = SK_RULE_FORCE, .reads = X | P, .writes = X | P,
-                     .card = {.statement = "    if (X.w > 0) { vec3 shift = shift@(X.xyz); X.xyz += shift; P.xyz += shift; }\n",
+                     .card = {.statement =
+                                  "    if (X.w > 0) { vec3 shift = shift@(X.xyz); X.xyz += shift; P.xyz += shift; }\n",
                               .call = "vec3 shift@(vec3 x) { return $k_shift(params@(), x); }\n"}},
 
     /* ---- constraints ---- */
@@ -109,15 +117,21 @@ const sk_op_type sk_op_types[SK_OP_KIND_COUNT] = {
 
     /* ---- contact ---- */
     [SK_OP_CONTACT_FORCE] = {"contact F", .rule = SK_RULE_COLLIDER, .reads = X | V | F, .writes = F,
-                             .card = {.statement = "    contact_force@(X, V, F);\n", .call = CONTACT_CALL, CONTACT_FILES}},
+                             .card = {.statement = "    contact_force@(X, V, F);\n",
+                                      .call = CONTACT_CALL,
+                                      CONTACT_FILES}},
     [SK_OP_CONTACT_VELOCITY] = {"contact V", .rule = SK_RULE_COLLIDER, .reads = X | V | SK_USES_THIRD, .writes = X | V,
-                                .card = {.statement = "    contact_impulse@(X, V, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
+                                .card = {.statement = "    contact_impulse@(X, V, $r);\n",
+                                         .call = CONTACT_CALL,
+                                         CONTACT_FILES}},
     [SK_OP_CONTACT_POSITION] = {"contact X", .rule = SK_RULE_COLLIDER, .reads = X | SK_USES_THIRD, .writes = X,
-                                .card = {.statement = "    contact_push@(X, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
+                                .card = {.statement = "    contact_push@(X, $r);\n",
+                                         .call = CONTACT_CALL,
+                                         CONTACT_FILES}},
     [SK_OP_CONTACT_SWEEP] = {"contact X", .rule = SK_RULE_COLLIDER},
-    [SK_OP_CONTACT_UPDATE] = {"contact XV", .rule = SK_RULE_COLLIDER,
-                              .reads = X | V | SK_USES_SECOND | SK_USES_THIRD, .writes = X | V,
-                              .card = {.statement = "    contact_update@(X, V, $f, $q, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
+    [SK_OP_CONTACT_UPDATE] =
+        {"contact XV", .rule = SK_RULE_COLLIDER, .reads = X | V | SK_USES_SECOND | SK_USES_THIRD, .writes = X | V,
+         .card = {.statement = "    contact_update@(X, V, $f, $q, $r);\n", .call = CONTACT_CALL, CONTACT_FILES}},
     [SK_OP_MEET] = {.name = "meet"},
 
     /* ---- implicit solves ---- */

@@ -53,7 +53,8 @@ static void put_back(const kept_block *kept, const sk_op *op, size_t at) {
 }
 
 void sk_run_partly(sk_run *run, const sk_op *op, size_t begin, size_t end) {
-    const sk_vector written[] = {op->dst, op->source[0], op->source[1], op->source[2], SK_X, SK_V, SK_X0, SK_V0, SK_T0, SK_T1, SK_SUPPORT};
+    const sk_vector written[] = {op->dst, op->source[0], op->source[1], op->source[2], SK_X,      SK_V,
+                                 SK_X0,   SK_V0,         SK_T0,         SK_T1,         SK_SUPPORT};
     enum { WRITTEN = sizeof written / sizeof *written };
     for (size_t at = begin, next; at < end; at = next) {
         kept_block kept[WRITTEN];
@@ -73,8 +74,9 @@ void sk_run_partly(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 /* ---- as text ---- */
 
 static const char *vector_text(sk_vector vector) {
-    static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",  "X0", "V0", "P",  "T0",  "T1",  "T2",
-                                                       "T3", "T4", "T5", "T6", "T7", "T8", "T9", "T10", "T11", "S", "SUPPORT"};
+    static const char *const names[SK_VECTOR_COUNT] = {"",   "X",  "V",  "F",   "X0",  "V0", "P",
+                                                       "T0", "T1", "T2", "T3",  "T4",  "T5", "T6",
+                                                       "T7", "T8", "T9", "T10", "T11", "S",  "SUPPORT"};
     return names[vector];
 }
 
@@ -124,9 +126,7 @@ static void put_letter(line *to, const sk_op *op, char letter) {
         break;
     }
     case 'o':
-        put(to, op->source[2] == SK_X    ? "X0 = X"
-                : op->source[2] == SK_V0 ? "X0 = old X; V0 = V"
-                                         : "X0 = old X");
+        put(to, op->source[2] == SK_X ? "X0 = X" : op->source[2] == SK_V0 ? "X0 = old X; V0 = V" : "X0 = old X");
         break;
     default: break;
     }

@@ -10,9 +10,9 @@ typedef struct sk_window {
     int32_t low[3], high[3];
     uint32_t *line; /* its first cell's number, by these */
     size_t count, capacity;
-    size_t wide; /* cells of a line */
-    bool alone;  /* all are in this part */
-    bool whole;  /* nobody of this part's own who is sorted is outside */
+    size_t wide;     /* cells of a line */
+    bool alone;      /* all are in this part */
+    bool whole;      /* nobody of this part's own who is sorted is outside */
     uint32_t *still; /* slots of those who are sorted and not moved: others', and the room for them */
     size_t still_count, still_capacity;
     uint64_t *mark; /* bits, by place: where one of those may be, in the cells that have any */
@@ -21,7 +21,7 @@ typedef struct sk_window {
 } sk_window;
 
 typedef struct sk_share_part {
-    sk_share share; /* first: the world's pointer is this one's */
+    sk_share share;            /* first: the world's pointer is this one's */
     sk_op_kernel *find, *copy; /* of a sort's second op and of its last one, else */
     sk_window window;
 } sk_share_part;
@@ -56,7 +56,8 @@ static size_t cell_count(const sk_cells *cells) {
 }
 
 /* The frame of cells for `everybody`, so many, in the box, with places for the group's particles. False: no memory. */
-static bool frame_of_all(sk_cells *cells, sk_allocator *allocator, const skein_border *border, const sk_group *group, real radius) {
+static bool frame_of_all(sk_cells *cells, sk_allocator *allocator, const skein_border *border, const sk_group *group,
+                         real radius) {
     sk_group all = *group;
     all.out = (group->end - group->first) - border->everybody; // which may be fewer than none: it is taken off again
     if (!sk_cells_frame_box(cells, allocator, sk_v3(border->low[0], border->low[1], border->low[2]),
@@ -104,7 +105,7 @@ typedef struct sk_extent {
 } sk_extent;
 
 static const sk_extent nobody = {{SK_CELLS_FARTHEST, SK_CELLS_FARTHEST, SK_CELLS_FARTHEST},
-                                   {-SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST}};
+                                 {-SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST, -SK_CELLS_FARTHEST}};
 
 static inline bool is_somewhere(sk_vec4 p) {
     const real most = SK_CELLS_FARTHEST;
@@ -126,7 +127,8 @@ static bool find_own(sk_window *window, const sk_run *run, const sk_op *op, sk_e
     const bool both = group->first == lookers->first && group->end == lookers->end;
     sk_extent all = nobody, own = nobody;
     size_t count = 0, slots = group->end_slot - group->first_slot;
-    if (!sk_reserve(run->allocator, (void **)&window->still, &window->still_capacity, slots + 1, sizeof *window->still)) return false;
+    if (!sk_reserve(run->allocator, (void **)&window->still, &window->still_capacity, slots + 1, sizeof *window->still))
+        return false;
     for (size_t slot = group->first_slot; slot < group->end_slot; slot++) {
         uint32_t i = run->particle_of[slot];
         sk_vec4 p = x[slot];
@@ -138,7 +140,8 @@ static bool find_own(sk_window *window, const sk_run *run, const sk_op *op, sk_e
     for (size_t slot = lookers->first_slot; slot < lookers->end_slot && !both; slot++) {
         uint32_t i = run->particle_of[slot];
         sk_vec4 p = x[slot];
-        if (i - lookers->first >= lookers->end - lookers->first || (p.w == 0 && v[slot].w == 0) || !is_somewhere(p)) continue;
+        if (i - lookers->first >= lookers->end - lookers->first || (p.w == 0 && v[slot].w == 0) || !is_somewhere(p))
+            continue;
         take(&own, p);
     }
     window->still_count = count;
@@ -182,8 +185,12 @@ static void lay(sk_run *run, const sk_op *op, bool quads) {
 }
 
 static skein_state state_of(const sk_run *run) {
-    return (skein_state){run->particle_count, run->slot_count, run->slot_of, run->particle_of,
-                         (skein_real(*)[4])(void *)run->vector[SK_X], (skein_real(*)[4])(void *)run->vector[SK_V]};
+    return (skein_state){run->particle_count,
+                         run->slot_count,
+                         run->slot_of,
+                         run->particle_of,
+                         (skein_real(*)[4])(void *)run->vector[SK_X],
+                         (skein_real(*)[4])(void *)run->vector[SK_V]};
 }
 
 static skein_share_look look_of(const sk_op *op) {
@@ -224,7 +231,8 @@ static void send(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
     const skein_cells shown = shown_of(cells);
     share->failed = share->failed || !share->given.send(share->given.user, &look, &shown, &state);
-    run->no_memory = run->no_memory || !find_window(window, run, cells, op) || !list_lines(window, cells, run->allocator);
+    run->no_memory =
+        run->no_memory || !find_window(window, run, cells, op) || !list_lines(window, cells, run->allocator);
     lay(run, op, false);
 }
 
@@ -283,7 +291,8 @@ static void find(sk_run *run, const sk_op *op, size_t begin, size_t end) {
 /* Marks the places of cells that have any who is not moved. False: no memory. */
 static bool mark_still(sk_window *window, const sk_cells *cells, sk_allocator *allocator) {
     size_t words = cells->count / 64 + 1;
-    if (!sk_reserve(allocator, (void **)&window->mark, &window->mark_capacity, words, sizeof *window->mark)) return false;
+    if (!sk_reserve(allocator, (void **)&window->mark, &window->mark_capacity, words, sizeof *window->mark))
+        return false;
     memset(window->mark, 0, words * sizeof *window->mark);
     for (size_t k = 0; k < window->still_count; k++) {
         uint32_t cell = cells->cell[window->still[k] - cells->group.first_slot];
@@ -314,7 +323,8 @@ static void rank(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     }
     // from behind, so that each cell ends up with where it begins, and its members in the order of slots
     for (size_t k = slots; k-- > 0;)
-        if (cells->cell[k] != SK_NOWHERE) cells->slot[--start[cells->cell[k]]] = (uint32_t)(cells->group.first_slot + k);
+        if (cells->cell[k] != SK_NOWHERE)
+            cells->slot[--start[cells->cell[k]]] = (uint32_t)(cells->group.first_slot + k);
     cells->count = sum;
     cells->in_order = true; // they are put in the whole run's below, and in no other
     run->no_memory = window->marked && !mark_still(window, cells, run->allocator);
@@ -348,7 +358,8 @@ static void move_forwards(uint32_t *slot, size_t count, const uint32_t *number, 
 
 /* Members of cells, by their numbers in the whole run. They are few, or in order but for few. Who is alone in a cell is not asked
  * for a number, which lies anywhere in memory. */
-static void put_in_order(sk_cells *cells, size_t begin, size_t end, const uint32_t *number, const uint32_t *particle_of) {
+static void put_in_order(sk_cells *cells, size_t begin, size_t end, const uint32_t *number,
+                         const uint32_t *particle_of) {
     const uint32_t *cell = cells->cell - cells->group.first_slot;
     uint32_t *slot = cells->slot;
     for (size_t place = begin + 1, first = begin; place < end; place++) {
@@ -452,8 +463,8 @@ bool sk_op_can_be_shared(const sk_op *op) {
 }
 
 bool sk_op_is_joined(const sk_op *op) {
-    static const sk_op_kind kinds[] = {SK_OP_PACK,       SK_OP_UNPACK, SK_OP_FORCE, SK_OP_PROJECT,
-                                       SK_OP_MULTIPLIER, SK_OP_LIMIT};
+    static const sk_op_kind kinds[] = {SK_OP_PACK,    SK_OP_UNPACK,     SK_OP_FORCE,
+                                       SK_OP_PROJECT, SK_OP_MULTIPLIER, SK_OP_LIMIT};
     for (size_t i = 0; i < sizeof kinds / sizeof *kinds; i++)
         if (op->kind == kinds[i]) return true;
     return false;

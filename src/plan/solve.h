@@ -33,10 +33,10 @@ typedef struct sk_solve {
     bool factored; /* there is a factor of the whole matrix (plan/matrix.h) */
     size_t held;   /* particles that surfaces have held back, as they were last looked at */
     /* figures of a step */
-    double residual; /* the largest final residual, as a share of the first one of its substep */
-    size_t unsolved; /* substeps that reached neither the tolerance nor the level of rounding */
+    double residual;                      /* the largest final residual, as a share of the first one of its substep */
+    size_t unsolved;                      /* substeps that reached neither the tolerance nor the level of rounding */
     size_t newton_iterations, iterations; /* of Newton's method, of conjugate gradients */
-    size_t factors, failures; /* factorisations, and those that failed, or whose solves did */
+    size_t factors, failures;             /* factorisations, and those that failed, or whose solves did */
 } sk_solve;
 
 /* Kernels of ops over slots; `s` is the solve's scale, and those marked * store partial sums of what stands last.

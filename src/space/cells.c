@@ -201,8 +201,7 @@ void sk_cells_copy(sk_cells *cells, const sk_state *state, size_t begin, size_t 
     }
 }
 
-bool sk_cells_sort(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group,
-                   real radius) {
+bool sk_cells_sort(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group, real radius) {
     size_t first, last;
     if (!sk_cells_frame(cells, allocator, state, group, radius)) return false;
     sk_cells_find(cells, state, group->first_slot, group->end_slot);

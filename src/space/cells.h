@@ -93,8 +93,7 @@ typedef struct sk_state {
 bool sk_cells_reserve(sk_cells *cells, sk_allocator *allocator, const sk_group *group);
 /* Frames cells of at least `radius` around the particles, and reserves their memory. Cells are made larger if there
  * would be many more of them than particles. False when there is no memory: no particle is in a cell then. */
-bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group,
-                    real radius);
+bool sk_cells_frame(sk_cells *cells, sk_allocator *allocator, const sk_state *state, const sk_group *group, real radius);
 /* The same for a known box around them; a point if no particle is finite. */
 bool sk_cells_frame_box(sk_cells *cells, sk_allocator *allocator, sk_vec3 low, sk_vec3 high, const sk_group *group,
                         real radius);

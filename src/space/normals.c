@@ -114,8 +114,8 @@ skein_status skein_mesh_normals(const skein_mesh *mesh, skein_normals weighting,
     for (size_t f = 0; f < mesh->face_count; f++) {
         uint32_t size = mesh->face_sizes[f];
         if (size < 3 || size > mesh->face_vertex_count - corner)
-            return sk_fail(error, SKEIN_ERROR_MESH, "", "face %zu has %u corners: expected 3 or more, of the %zu left", f,
-                           size, mesh->face_vertex_count - corner);
+            return sk_fail(error, SKEIN_ERROR_MESH, "", "face %zu has %u corners: expected 3 or more, of the %zu left",
+                           f, size, mesh->face_vertex_count - corner);
         for (uint32_t i = 0; i < size; i++, corner++)
             if (mesh->face_vertices[corner] >= mesh->vertex_count)
                 return sk_fail(error, SKEIN_ERROR_MESH, "", "face %zu names vertex %u: the mesh has %zu", f,

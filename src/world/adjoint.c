@@ -55,11 +55,12 @@ static skein_status check_plan(const sk_plan *plan, skein_error *error) {
         if (reverse_of(op) == SK_REVERSE_SOLVE) solve_end = r + op->length + 1;
         if (is_elementary(op) || (r < solve_end && reverse_of(op) == SK_REVERSE_BY_SOLVE)) continue;
         sk_op_describe(&plan->data[r], line, sizeof line);
-        return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
-                       "a run with this op has no gradient yet: '%.120s'; there are those of methods that add up forces "
-                       "(symplectic_euler, leapfrog, rk4 ...), of backward_euler, xpbd and pbd, of constraints, gravity, "
-                       "uniform wind and drag",
-                       line);
+        return sk_fail(
+            error, SKEIN_ERROR_VALUE, "gradient",
+            "a run with this op has no gradient yet: '%.120s'; there are those of methods that add up forces "
+            "(symplectic_euler, leapfrog, rk4 ...), of backward_euler, xpbd and pbd, of constraints, gravity, "
+            "uniform wind and drag",
+            line);
     }
     return SKEIN_OK;
 }
@@ -131,14 +132,16 @@ skein_status sk_adjoint_begin(sk_adjoint *a, skein_world *world, skein_error *er
     }
     for (int v = SK_NONE + 1; v < SK_VECTOR_COUNT; v++)
         if (wanted[v]) good &= (a->of[v] = sk_adjoint_new_numbers(a)) != NULL;
-    real **const others[] = {&a->inverse_mass, &a->mass,     &a->moved,    &a->still,    &a->force[0], &a->force[1],
-                             &a->plain[0],     &a->plain[1], &a->plain[2], &a->plain[3], &a->plain[4], &a->side[0],
-                             &a->side[1],     &a->unit,     &a->linear};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) good &= (*others[i] = sk_adjoint_new_numbers(a)) != NULL;
+    real **const others[] = {&a->inverse_mass, &a->mass,     &a->moved,    &a->still,    &a->force[0],
+                             &a->force[1],     &a->plain[0], &a->plain[1], &a->plain[2], &a->plain[3],
+                             &a->plain[4],     &a->side[0],  &a->side[1],  &a->unit,     &a->linear};
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        good &= (*others[i] = sk_adjoint_new_numbers(a)) != NULL;
     a->forces = sk_allocate(&world->allocator, (world->rules.forces.count + 1) * sizeof *a->forces);
     good &= sk_adjoint_begin_projections(a);
     if (!good || !a->forces) return sk_fail_memory(error, "a gradient");
-    for (size_t i = 0; i < world->rules.forces.count; i++) sk_force_add_uniform(world->rules.forces.data[i], &a->forces[i]);
+    for (size_t i = 0; i < world->rules.forces.count; i++)
+        sk_force_add_uniform(world->rules.forces.data[i], &a->forces[i]);
     find_masses(a);
     a->keeps_v = keeps_velocities(a);
     for (size_t e = 0; e < a->effect_count; e++) a->pulled |= a->effects[e].on_forces;
@@ -148,9 +151,9 @@ skein_status sk_adjoint_begin(sk_adjoint *a, skein_world *world, skein_error *er
 void sk_adjoint_end(sk_adjoint *a) {
     if (!a->world) return;
     sk_allocator *allocator = &a->world->allocator;
-    real *const all[] = {a->inverse_mass, a->mass,     a->moved,    a->still,    a->force[0], a->force[1],
-                         a->plain[0],     a->plain[1], a->plain[2], a->plain[3], a->plain[4], a->side[0],
-                         a->side[1],      a->unit,     a->linear};
+    real *const all[] = {a->inverse_mass, a->mass,     a->moved,    a->still,    a->force[0],
+                         a->force[1],     a->plain[0], a->plain[1], a->plain[2], a->plain[3],
+                         a->plain[4],     a->side[0],  a->side[1],  a->unit,     a->linear};
     for (size_t i = 0; i < sizeof all / sizeof *all; i++) sk_release(allocator, all[i]);
     sk_adjoint_end_solve(a);
     sk_adjoint_end_projections(a);
@@ -345,7 +348,8 @@ static skein_status reverse_body(sk_adjoint *a, const sk_op *body, size_t count,
     for (size_t end = count; end > 0 && !status;) {
         size_t k = start_of(a, body, end), done = end - k;
         const sk_op *op = &body[k];
-        if (reverse_of(op) == SK_REVERSE_SOLVE) status = sk_adjoint_reverse_solve(a, &a->tape.data[--a->used], time, error);
+        if (reverse_of(op) == SK_REVERSE_SOLVE)
+            status = sk_adjoint_reverse_solve(a, &a->tape.data[--a->used], time, error);
         else if (sk_adjoint_looks_at_state(op)) status = reverse_group(a, body, k, time, &done, error);
         else if (sk_adjoint_projects(op)) status = reverse_projections(a, body, k, iteration, time, &done, error);
         else reverse_combine(a, op);

@@ -34,22 +34,22 @@ typedef struct sk_projections sk_projections; /* what going through projections 
 
 typedef struct sk_adjoint {
     skein_world *world;
-    size_t reals;   /* of a vector: 4 a slot, spare ones too */
-    size_t packed;  /* slots in packed blocks while the plan runs */
-    double span;    /* m, how far positions are moved to either side to see how a force changes */
+    size_t reals;  /* of a vector: 4 a slot, spare ones too */
+    size_t packed; /* slots in packed blocks while the plan runs */
+    double span;   /* m, how far positions are moved to either side to see how a force changes */
     real *of[SK_VECTOR_COUNT];
     real *inverse_mass, *mass; /* of each number; 0 beside x, y and z, and for particles that are pinned or none */
     real *moved, *still, *force[2], *plain[5];
-    real *side[2]; /* X a little to either side, along the adjoint of F, */
-    double step;   /* by so much of that; 0: not made for the present state */
-    double work;   /* of the forces added up there so far, times the adjoint of F */
-    double most;   /* the largest number of the adjoint of F; below 0: not looked for */
-    real *unit;    /* that adjoint over `most`; */
-    real *linear;  /* forces there of what is linear, */
-    bool unit_made; /* for the present state; */
+    real *side[2];      /* X a little to either side, along the adjoint of F, */
+    double step;        /* by so much of that; 0: not made for the present state */
+    double work;        /* of the forces added up there so far, times the adjoint of F */
+    double most;        /* the largest number of the adjoint of F; below 0: not looked for */
+    real *unit;         /* that adjoint over `most`; */
+    real *linear;       /* forces there of what is linear, */
+    bool unit_made;     /* for the present state; */
     double linear_work; /* and X times them */
-    bool keeps_v;  /* the tape has V: forces, or what is asked of them, depend on it */
-    bool pulled;   /* the tape has X and V before each op that pulls: a field changes forces */
+    bool keeps_v;       /* the tape has V: forces, or what is asked of them, depend on it */
+    bool pulled;        /* the tape has X and V before each op that pulls: a field changes forces */
     struct {
         sk_taped *data;
         size_t count, capacity;
@@ -57,7 +57,7 @@ typedef struct sk_adjoint {
     size_t used; /* of the tape */
     sk_krylov krylov;
     sk_projections *projections; /* NULL: the plan has none */
-    sk_uniform_force *forces; /* each of the world's as it is */
+    sk_uniform_force *forces;    /* each of the world's as it is */
     sk_effect *effects;
     size_t effect_count;
     double *by_effect;

@@ -170,8 +170,8 @@ static bool change(const sk_batch *batch, double time, size_t element, const sk_
 }
 
 /* The damping of one element: what X- and V- get of it. */
-static bool reverse_damped(sk_adjoint *a, const sk_batch *batch, double time, size_t element,
-                           const double e[2], double c, triples g, triples v, triples bar) {
+static bool reverse_damped(sk_adjoint *a, const sk_batch *batch, double time, size_t element, const double e[2],
+                           double c, triples g, triples v, triples bar) {
     const sk_vec4 *x[5];
     triples along_bar = {{0}}, along_v = {{0}};
     size_t count = sk_batch_particle_count(batch);

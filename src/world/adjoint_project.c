@@ -48,16 +48,16 @@ typedef struct found {
 typedef struct projected {
     const sk_batch *batch;
     sort_of_kind sort;
-    uint32_t *element;          /* of each lane; or NOBODY */
-    double *multiplier, *bar;   /* of each lane, and the adjoints */
-    double *share;              /* q of each element's particles, but for a distance's, which are 1 and -1 */
+    uint32_t *element;        /* of each lane; or NOBODY */
+    double *multiplier, *bar; /* of each lane, and the adjoints */
+    double *share;            /* q of each element's particles, but for a distance's, which are 1 and -1 */
 } projected;
 
 struct sk_projections {
     projected *data; /* of each batch; those that no op projects have no elements */
     size_t count;
     sk_vec4 *x, *start, *bar, *bar_start; /* of each slot, as they lie outside of a step; w: the inverse mass */
-    sk_vec4 *side[2]; /* where a gradient is looked at; the slots of one element at a time */
+    sk_vec4 *side[2];                     /* where a gradient is looked at; the slots of one element at a time */
     char *records;
     size_t used, capacity;
 };
@@ -69,8 +69,8 @@ typedef struct pass {
     const sk_sweep *sweep;
     projected *p;
     double time, per_step, gamma;
-    bool keeps, looks_back; /* at X0: it is damped, or that is asked for */
-    size_t arity, bytes;    /* of a record */
+    bool keeps, looks_back;       /* at X0: it is damped, or that is asked for */
+    size_t arity, bytes;          /* of a record */
     double by_softness, by_gamma; /* sums of a times a-, and of c- */
     skein_error *error;
 } pass;
@@ -152,7 +152,8 @@ bool sk_adjoint_begin_projections(sk_adjoint *a) {
     all->data = sk_allocate(allocator, (all->count + 1) * sizeof *all->data);
     sk_vec4 **const vectors[] = {&all->x, &all->start, &all->bar, &all->bar_start, &all->side[0], &all->side[1]};
     bool good = all->data != NULL;
-    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++) good &= (*vectors[i] = sk_allocate(allocator, bytes)) != NULL;
+    for (size_t i = 0; i < sizeof vectors / sizeof *vectors; i++)
+        good &= (*vectors[i] = sk_allocate(allocator, bytes)) != NULL;
     for (size_t r = 0; r < world->plan.count && good; r++) {
         const sk_op *op = &world->plan.data[r];
         if (sk_adjoint_projects(op)) good = find_projected(a, ((const sk_sweep *)op->rule)->batch);
@@ -205,8 +206,8 @@ static double softness_of(const pass *s, size_t lane) {
 
 static bool fail_at_kink(const pass *s, uint32_t element) {
     return !sk_fail(s->error, SKEIN_ERROR_VALUE, s->p->batch->label,
-                    "element %u has a kink where it is at %.6g s, and no derivative: a length that is 0, say", (unsigned)element,
-                    s->time);
+                    "element %u has a kink where it is at %.6g s, and no derivative: a length that is 0, say",
+                    (unsigned)element, s->time);
 }
 
 /* C, g and S, as a projection finds them. */
@@ -252,7 +253,8 @@ static bool project(pass *s, size_t lane, found *f) {
     f->below = (1 + s->gamma) * f->weight + soft;
     if (!(f->below > 0) || !(f->weight > 0) || (one_sided && f->value >= 0 && !(f->multiplier > 0))) return true;
     f->outcome = MOVED;
-    f->change = (-f->value - soft * f->multiplier - (s->gamma > 0 ? s->gamma * change_since_start(s, f) : 0)) / f->below;
+    f->change =
+        (-f->value - soft * f->multiplier - (s->gamma > 0 ? s->gamma * change_since_start(s, f) : 0)) / f->below;
     double most = s->p->batch->type->most_change;
     if (most > 0 && fabs(f->change) * f->weight > most)
         f->outcome = BOUNDED, f->below = f->weight, f->change = copysign(most, f->change) / f->weight;
@@ -314,14 +316,16 @@ static bool reverse_moved(pass *s, size_t lane, const found *f, double (*u)[3], 
     sk_projections *all = s->a->projections;
     const uint32_t *slot = slots_of(s, f->element);
     bool by_value = f->outcome != BOUNDED;
-    double soft = by_value ? softness_of(s, lane) : 0, gamma = by_value ? s->gamma : 0, stiff = 1 + gamma, share = along / f->below;
+    double soft = by_value ? softness_of(s, lane) : 0, gamma = by_value ? s->gamma : 0, stiff = 1 + gamma,
+           share = along / f->below;
     double z[SK_MOST_ARITY][3], turned[SK_MOST_ARITY][3], x0[SK_MOST_ARITY][3], since = change_since_start(s, f);
     if (f->outcome == LET_GO) share = 0;
     take(all->start, slot, s->arity, x0);
     for (size_t i = 0; i < s->arity; i++)
         for (int k = 0; k < 3; k++)
-            z[i][k] = f->change * u[i][k] - share * (gamma * (f->x[i][k] - x0[i][k]) +
-                                                     2 * stiff * f->change * (double)all->x[slot[i]].w * f->gradient[i][k]);
+            z[i][k] =
+                f->change * u[i][k] - share * (gamma * (f->x[i][k] - x0[i][k]) +
+                                               2 * stiff * f->change * (double)all->x[slot[i]].w * f->gradient[i][k]);
     if (!differ(s, f, z, turned)) return false;
     for (size_t i = 0; i < s->arity; i++) {
         sk_vec4 *start = &all->bar_start[slot[i]];
@@ -371,7 +375,8 @@ static inline void sum_of(const sk_vec4 *vector, const uint32_t *slot, const dou
 }
 
 /* F: how far L has come since the substep's start. */
-static inline void way_of(const pass *s, const uint32_t *slot, const double *q, size_t arity, const found_length *f, double way[3]) {
+static inline void way_of(const pass *s, const uint32_t *slot, const double *q, size_t arity, const found_length *f,
+                          double way[3]) {
     sum_of(s->a->projections->start, slot, q, arity, way);
     for (int k = 0; k < 3; k++) way[k] = f->length * f->n[k] - way[k];
 }
@@ -471,8 +476,14 @@ static pass begin_pass(sk_adjoint *a, const sk_op *op, double time, skein_error 
     const sk_rules *rules = &a->world->rules;
     size_t number = 0;
     while (rules->batches.data[number] != sweep->batch) number++;
-    pass s = {.a = a, .op = op, .sweep = sweep, .p = &a->projections->data[number], .time = time - op->before_end,
-              .keeps = op->source[1] == SK_X0, .arity = sweep->batch->arity, .error = error};
+    pass s = {.a = a,
+              .op = op,
+              .sweep = sweep,
+              .p = &a->projections->data[number],
+              .time = time - op->before_end,
+              .keeps = op->source[1] == SK_X0,
+              .arity = sweep->batch->arity,
+              .error = error};
     s.per_step = op->coefficient[0] / (op->dt * op->dt);
     s.gamma = s.keeps ? sk_batch_damping_time(sweep->batch) / op->dt : 0;
     bool any = s.p->sort == BY_DIFFERENCES;

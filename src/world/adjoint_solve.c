@@ -34,7 +34,8 @@ bool sk_adjoint_begin_solve(sk_adjoint *a, const sk_op *solve) {
     for (size_t i = 0; i <= SK_KRYLOV; i++) good &= (k->basis[i] = sk_adjoint_new_numbers(a)) != NULL;
     for (size_t i = 0; i < SK_KRYLOV; i++) good &= (k->change[i] = sk_adjoint_new_numbers(a)) != NULL;
     real **const others[] = {&k->right, &k->left, &k->by_x, &k->by_v};
-    for (size_t i = 0; i < sizeof others / sizeof *others; i++) good &= (*others[i] = sk_adjoint_new_numbers(a)) != NULL;
+    for (size_t i = 0; i < sizeof others / sizeof *others; i++)
+        good &= (*others[i] = sk_adjoint_new_numbers(a)) != NULL;
     k->by_effect = sk_allocate(&a->world->allocator, (a->effect_count + 1) * sizeof *k->by_effect);
     return good && k->by_effect;
 }
@@ -225,8 +226,8 @@ skein_status sk_adjoint_reverse_solve(sk_adjoint *a, const sk_taped *at, double 
     if (s.status) return s.status;
     if (!(left <= worst_share))
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
-                       "at %.6g s the linear system of a substep could not be solved: %.2g of its right side is left", time,
-                       left);
+                       "at %.6g s the linear system of a substep could not be solved: %.2g of its right side is left",
+                       time, left);
     for (size_t i = 0; i < a->reals; i++) {
         bool free = a->inverse_mass[i] > 0;
         v0[i] += free ? a->mass[i] * y[i] : v[i] + h * x[i] + k->by_v[i] + h * k->by_x[i];

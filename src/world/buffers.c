@@ -74,9 +74,10 @@ static void find_places(const skein_world *world, const sk_body *body, double bl
 static void find_normals(const sk_body *body, const shape *s) {
     for (size_t f = 0, i = 0; f < body->face_count; f++)
         for (size_t first = i; i < first + body->face_sizes[f]; i++) // what is cut has no area
-            s->corner[i] = body->particle_of_vertex[body->face_vertices[sk_is_cut(body, f) ? first : i]] - body->first_particle;
-    const skein_mesh mesh = {s->xyz,           body->particle_count,   body->face_sizes, body->face_count, s->corner,
-                             body->face_vertex_count};
+            s->corner[i] =
+                body->particle_of_vertex[body->face_vertices[sk_is_cut(body, f) ? first : i]] - body->first_particle;
+    const skein_mesh mesh = {s->xyz,    body->particle_count,   body->face_sizes, body->face_count,
+                             s->corner, body->face_vertex_count};
     sk_mesh_normals(&mesh, SKEIN_NORMALS_AREA, s->normal);
 }
 
@@ -138,7 +139,8 @@ skein_status skein_collider_triangles(const skein_world *world, skein_handle han
     const sk_object *object = sk_object_find(world, handle, SKEIN_COLLIDER);
     if (!object) return SKEIN_ERROR_HANDLE;
     const sk_trimesh *m = triangles_of(object->as.collider);
-    *triangles = m ? (skein_triangles){m->corner[0], m->triangle_count, m->vertex_count} : (skein_triangles){NULL, 0, 0};
+    *triangles =
+        m ? (skein_triangles){m->corner[0], m->triangle_count, m->vertex_count} : (skein_triangles){NULL, 0, 0};
     return SKEIN_OK;
 }
 
@@ -153,8 +155,10 @@ skein_status skein_collider_vertices_copy(const skein_world *world, skein_handle
     const sk_pose pose = sk_collider_pose_at(collider, world->time);
     const real *r = pose.rotation;
     for (size_t v = 0; v < m->vertex_count && !status; v++) {
-        const sk_vec3 own = sk_scale((real)collider->type->scale(collider->params), sk_trimesh_place(m, v, world->time));
-        const sk_vec3 at = sk_add(pose.position, sk_v3(r[0] * own.x + r[1] * own.y + r[2] * own.z, r[3] * own.x + r[4] * own.y + r[5] * own.z,
+        const sk_vec3 own =
+            sk_scale((real)collider->type->scale(collider->params), sk_trimesh_place(m, v, world->time));
+        const sk_vec3 at = sk_add(pose.position, sk_v3(r[0] * own.x + r[1] * own.y + r[2] * own.z,
+                                                       r[3] * own.x + r[4] * own.y + r[5] * own.z,
                                                        r[6] * own.x + r[7] * own.y + r[8] * own.z));
         put(&positions, v, (double)at.x, (double)at.y, (double)at.z);
     }

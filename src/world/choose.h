@@ -5,8 +5,8 @@
 #include "world/world.h"
 
 /* Marks those of the particles [first, first + count) that a text names (particles/selection.h), of a body or, with NULL, of all. */
-skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text, bool *chosen,
-                             skein_error *error);
+skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
+                             bool *chosen, skein_error *error);
 
 /* Marks those of a body's particles that words name, "top edge", as they do in its `pins`; `position` is where they were
  * built. Of bodies/words.c, which knows the kinds. */

@@ -13,8 +13,8 @@
 
 void sk_cut_release(sk_cut *cut, sk_allocator *allocator) {
     if (!cut) return;
-    void *arrays[] = {cut->face, cut->triangle, cut->first, cut->corner, cut->start, cut->around,
-                      cut->first_side, cut->side, cut->to_cut, cut->queue, cut->mark};
+    void *arrays[] = {cut->face,       cut->triangle, cut->first,  cut->corner, cut->start, cut->around,
+                      cut->first_side, cut->side,     cut->to_cut, cut->queue,  cut->mark};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, cut);
 }

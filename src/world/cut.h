@@ -20,10 +20,10 @@ struct sk_cut {
     uint64_t changes;
     uint32_t (*triangle)[3]; /* the body's triangles as they were built: of cut faces the world has one corner thrice */
     /* the surface, by the body's particles, numbered from its first one on */
-    size_t *first;    /* of each face its first corner; faces + 1 */
-    uint32_t *corner; /* of all faces */
-    size_t *start;    /* of each particle its first face in `around`; particles + 1 */
-    uint32_t *around; /* faces that have it */
+    size_t *first;      /* of each face its first corner; faces + 1 */
+    uint32_t *corner;   /* of all faces */
+    size_t *start;      /* of each particle its first face in `around`; particles + 1 */
+    uint32_t *around;   /* faces that have it */
     size_t *first_side; /* of each particle its first neighbour along an edge of a face; particles + 1 */
     sk_side *side;      /* of all particles */
     uint32_t *to_cut;   /* so many edges lead from a particle to the nearest corner of a face that is cut */

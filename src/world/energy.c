@@ -32,7 +32,8 @@ static void measure_particles(const skein_world *world, skein_statistics *s) {
         block_sums sums = {0};
         for (size_t i = first; i < last; i++) {
             sk_vec4 x = all->vector[SK_X][all->slot_of[i]];
-            if (x.w > 0 && sk_particle_counts(all, i)) add_particle(&world->rules, world->time, i, x, all->vector[SK_V][all->slot_of[i]], &sums);
+            if (x.w > 0 && sk_particle_counts(all, i))
+                add_particle(&world->rules, world->time, i, x, all->vector[SK_V][all->slot_of[i]], &sums);
         }
         s->kinetic_energy += sums.kinetic;
         s->potential_energy += sums.potential;
@@ -115,7 +116,7 @@ bool skein_world_is_driven(skein_world *world) {
         if (sk_collider_mass(collider) > 0) return true; // it cancels what pulls back what leaves (contact.c)
     }
     for (size_t i = 0; i < world->motions.count; i++)
-        if (world->motions.data[i]->common->enabled) return true; // wherever its pins may stand just now
+        if (world->motions.data[i]->common->enabled) return true;            // wherever its pins may stand just now
     if (sk_world_fetch(world) || sk_world_arrange(world, NULL)) return true; // it cannot be said
     return pinned_particle_moves(world) || energy_depends_on_time(world);
 }

@@ -33,12 +33,12 @@ static const double kept = 0.6;
 /* A body as others come near it, and as its pins go past it. */
 typedef struct comer {
     const sk_object *object;
-    double thickness;       /* m, its own; 0: the rule's */
-    real low[3], high[3];   /* m: around all of it, now, */
-    double first, last;     /* and along x, until `soon` */
-    double free[3];         /* m/s: its free particles, in the mean, or 0 where there are none; */
-    double all[3];          /* all of it, where a pin goes as it is led; */
-    double past;            /* and how fast a pin goes past the free ones, at most */
+    double thickness;     /* m, its own; 0: the rule's */
+    real low[3], high[3]; /* m: around all of it, now, */
+    double first, last;   /* and along x, until `soon` */
+    double free[3];       /* m/s: its free particles, in the mean, or 0 where there are none; */
+    double all[3];        /* all of it, where a pin goes as it is led; */
+    double past;          /* and how fast a pin goes past the free ones, at most */
 } comer;
 
 static bool is_contact(const sk_object *object) {
@@ -120,7 +120,8 @@ static double time_until(const comer *a, const comer *b, double near) {
     double begin = 0, end = INFINITY;
     for (int k = 0; k < 3; k++) {
         const double speed = b->all[k] - a->all[k];
-        const double least = (double)a->low[k] - near - (double)b->high[k], most = (double)a->high[k] + near - (double)b->low[k];
+        const double least = (double)a->low[k] - near - (double)b->high[k],
+                     most = (double)a->high[k] + near - (double)b->low[k];
         if (speed == 0 && (least > 0 || most < 0)) return INFINITY;
         if (speed == 0) continue;
         begin = fmax(begin, fmin(least / speed, most / speed));
@@ -130,7 +131,8 @@ static double time_until(const comer *a, const comer *b, double near) {
 }
 
 /* How many substeps a rule wants in a step of dt where two come near each other at their velocities; 0: no more than usual. */
-static double wanted_at(const sk_object *rule, const double a[3], const double b[3], double thickness, double usual, double dt) {
+static double wanted_at(const sk_object *rule, const double a[3], const double b[3], double thickness, double usual,
+                        double dt) {
     const double v[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
     const double wanted = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * dt / (nearer * thickness);
     return wanted > usual ? fmin(wanted, usual * sk_object_number(rule, "more_substeps")) : 0;
@@ -151,7 +153,8 @@ static double wanted_by_two(const sk_object *rule, const comer *a, const comer *
     if (!(steps < soon)) return 0;
     const sk_common *one = &a->object->common.plain, *other = &b->object->common.plain;
     const sk_force *force = rule->as.force;
-    if (sk_pairs_mean(force->type->meeting->ignored(force->params), one->name, one->groups, other->name, other->groups)) return 0;
+    if (sk_pairs_mean(force->type->meeting->ignored(force->params), one->name, one->groups, other->name, other->groups))
+        return 0;
     return wanted_before(wanted, steps);
 }
 
@@ -166,23 +169,26 @@ static bool may_be_met(const sk_object *object) {
 
 /* How many it wants for a body that nears a collider at these poses, now and when the step is over: this goes to where the body is, as both go
  * now. */
-static double wanted_by_collider(const skein_world *world, const sk_object *rule, const sk_collider *collider, const sk_pose pose[2], const comer *c,
-                                 double usual, double dt) {
+static double wanted_by_collider(const skein_world *world, const sk_object *rule, const sk_collider *collider,
+                                 const sk_pose pose[2], const comer *c, double usual, double dt) {
     const sk_vec3 way = sk_sub(pose[1].position, pose[0].position);
-    const double goes[3] = {(double)way.x / dt, (double)way.y / dt, (double)way.z / dt}, thickness = thickness_of(c, rule);
+    const double goes[3] = {(double)way.x / dt, (double)way.y / dt, (double)way.z / dt},
+                 thickness = thickness_of(c, rule);
     const double wanted = wanted_at(rule, c->all, goes, thickness, usual, dt);
     if (!(wanted > 0)) return 0;
     const sk_vec3 past = sk_sub(way, (sk_vec3){(real)(dt * c->all[0]), (real)(dt * c->all[1]), (real)(dt * c->all[2])});
     const double clear = (double)sk_length(past) + thickness + collider->common->thickness;
     sk_pose at = pose[0];
-    for (double steps = 0; steps < soon && wanted_before(wanted, steps) > usual; steps++, at.position = sk_add(at.position, past))
+    for (double steps = 0; steps < soon && wanted_before(wanted, steps) > usual;
+         steps++, at.position = sk_add(at.position, past))
         if (!sk_collider_is_far(world, collider, &at, c->low, c->high, clear) &&
             !(sk_collider_distance(world, collider, &at, c->object->as.body) > clear))
             return wanted_before(wanted, steps);
     return 0;
 }
 
-static double wanted_by_colliders(const skein_world *world, const sk_object *rule, const comer *body, size_t count, double usual, double dt) {
+static double wanted_by_colliders(const skein_world *world, const sk_object *rule, const comer *body, size_t count,
+                                  double usual, double dt) {
     double wanted = 0;
     for (size_t i = 0; i < world->objects.count; i++) {
         if (!may_be_met(world->objects.data[i])) continue;
@@ -205,7 +211,8 @@ static int compare_first(const void *a, const void *b) {
 }
 
 /* How many substeps a rule wants for the bodies that it acts on, sorted by where they begin. */
-static double wanted_by(const skein_world *world, const sk_object *rule, const comer *body, size_t count, double usual, double dt) {
+static double wanted_by(const skein_world *world, const sk_object *rule, const comer *body, size_t count, double usual,
+                        double dt) {
     double wanted = wanted_by_colliders(world, rule, body, count, usual, dt), thickest = 0;
     for (size_t i = 0; i < count; i++) thickest = fmax(thickest, thickness_of(&body[i], rule));
     for (size_t a = 0; a < count; a++) {
@@ -213,7 +220,8 @@ static double wanted_by(const skein_world *world, const sk_object *rule, const c
         const double by_pins = body[a].past * dt / (led * thickness_of(&body[a], rule));
         wanted = fmax(wanted, fmin(by_pins, usual * sk_object_number(rule, "more_substeps")));
         for (size_t b = a + 1; b < count && body[b].first <= body[a].last + 2 * thickest; b++)
-            if (acts_on(rule, body[b].object)) wanted = fmax(wanted, wanted_by_two(rule, &body[a], &body[b], usual, dt));
+            if (acts_on(rule, body[b].object))
+                wanted = fmax(wanted, wanted_by_two(rule, &body[a], &body[b], usual, dt));
     }
     return wanted;
 }
@@ -231,7 +239,8 @@ static double wanted_by_all(const skein_world *world, comer *body, double usual,
     if (count) qsort(body, count, sizeof *body, compare_first);
     double wanted = 0;
     for (size_t i = 0; i < world->objects.count; i++)
-        if (is_contact(world->objects.data[i])) wanted = fmax(wanted, wanted_by(world, world->objects.data[i], body, count, usual, dt));
+        if (is_contact(world->objects.data[i]))
+            wanted = fmax(wanted, wanted_by(world, world->objects.data[i], body, count, usual, dt));
     return wanted;
 }
 
@@ -240,7 +249,8 @@ bool sk_world_find_finer(skein_world *world, double dt, int usual, int *substeps
     if (world->device || world->share) return true; // there all know the same number
     double most = 0, wanted = 0;
     for (size_t i = 0; i < world->objects.count; i++)
-        if (is_contact(world->objects.data[i])) most = fmax(most, usual * sk_object_number(world->objects.data[i], "more_substeps"));
+        if (is_contact(world->objects.data[i]))
+            most = fmax(most, usual * sk_object_number(world->objects.data[i], "more_substeps"));
     if (!(most > usual)) return true;
     const bool leads = world->pins.count || world->motions.count;
     comer *body = sk_allocate(&world->allocator, (world->objects.count + 1) * sizeof *body);

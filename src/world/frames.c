@@ -20,7 +20,8 @@
 /* ---- the frame of a motion ---- */
 
 /* The nearest frame to the places that it leads its particles to. */
-static bool fit(const skein_world *world, sk_allocator *allocator, const sk_motion *motion, double since, sk_frame *frame) {
+static bool fit(const skein_world *world, sk_allocator *allocator, const sk_motion *motion, double since,
+                sk_frame *frame) {
     double(*places)[3] = sk_allocate(allocator, (2 * motion->count + 1) * sizeof *places);
     if (!places) return false;
     for (size_t i = 0; i < motion->count; i++) {
@@ -31,14 +32,16 @@ static bool fit(const skein_world *world, sk_allocator *allocator, const sk_moti
         memcpy(to, from, sizeof from);
         motion->type->move(motion, i, since, to);
     }
-    *frame = motion->count ? sk_frame_fit(motion->count, (const double(*)[3])places, (const double(*)[3])places + motion->count)
-                           : SK_NO_FRAME;
+    *frame = motion->count
+                 ? sk_frame_fit(motion->count, (const double(*)[3])places, (const double(*)[3])places + motion->count)
+                 : SK_NO_FRAME;
     sk_release(allocator, places);
     return true;
 }
 
 /* Where a motion puts what was built, at a time. Of one that moves all of space rigidly that is exact. */
-static bool frame_of(const skein_world *world, sk_allocator *allocator, const sk_motion *motion, double time, sk_frame *frame) {
+static bool frame_of(const skein_world *world, sk_allocator *allocator, const sk_motion *motion, double time,
+                     sk_frame *frame) {
     double since = fmax(0, time - motion->common->start);
     if (motion->type->given) return fit(world, allocator, motion, since, frame);
     *frame = SK_NO_FRAME;
@@ -85,12 +88,13 @@ static void find_middle(const skein_world *world, const sk_motion *motion, doubl
     }
 }
 
-static bool is_jump(const skein_world *world, const sk_motion *motion, const sk_leg *leg, const sk_frame *way, double time,
-                    double dt) {
+static bool is_jump(const skein_world *world, const sk_motion *motion, const sk_leg *leg, const sk_frame *way,
+                    double time, double dt) {
     const sk_motion_common *common = motion->common;
     double from[3], to[3], start[3], since = time - common->start;
     if (common->jump_times[0] && sk_motion_jumps(common, since, since + dt)) return true;
-    if (common->jump_turn < 180 && sk_frame_angle(way) > common->jump_turn * (3.14159265358979323846 / 180)) return true;
+    if (common->jump_turn < 180 && sk_frame_angle(way) > common->jump_turn * (3.14159265358979323846 / 180))
+        return true;
     if (!(common->jump < SK_UNBOUNDED)) return false;
     find_middle(world, motion, start);
     sk_frame_place(&leg->start, start, from);
@@ -161,8 +165,8 @@ static void place(const sk_frame *frame, sk_vec4 *x) {
 
 /* Puts particles elsewhere; their velocities turn. */
 static void put(sk_particles *particles, size_t first, size_t count, const sk_frame *frame, bool previous) {
-    const sk_frame turn = {{frame->turn[0], frame->turn[1], frame->turn[2], frame->turn[3], frame->turn[4], frame->turn[5],
-                            frame->turn[6], frame->turn[7], frame->turn[8]},
+    const sk_frame turn = {{frame->turn[0], frame->turn[1], frame->turn[2], frame->turn[3], frame->turn[4],
+                            frame->turn[5], frame->turn[6], frame->turn[7], frame->turn[8]},
                            {0, 0, 0}};
     for (size_t i = first; i < first + count; i++) {
         if (particles->presence[i] == SK_GONE) continue; // it has no place of its own
@@ -199,7 +203,8 @@ static bool carry_loose(skein_world *world) {
     if (!way.carries) return true;
     mark_bodies(world, 0); // where places of pins are listed: nobody's is now
     for (size_t first = 0, end; first < world->particles.count && good; first = end) {
-        for (end = first + 1; end < world->particles.count && (world->led_at[end] == 0) == (world->led_at[first] == 0);) end++;
+        for (end = first + 1; end < world->particles.count && (world->led_at[end] == 0) == (world->led_at[first] == 0);)
+            end++;
         if (world->led_at[first]) good = put_along(world, first, end - first, &way);
     }
     mark_bodies(world, SK_NOBODY);
@@ -286,7 +291,8 @@ skein_status skein_body_teleport(skein_world *world, skein_handle handle, const 
         if (!(fabs(frame.shift[k]) <= SK_FAR))
             return sk_fail(error, SKEIN_ERROR_VALUE, "shift", "numbers must be finite, under 1e15");
     if (!sk_is_turn(frame.turn))
-        return sk_fail(error, SKEIN_ERROR_VALUE, "turn", "expected the three rows of a rotation: of length 1, at right angles");
+        return sk_fail(error, SKEIN_ERROR_VALUE, "turn",
+                       "expected the three rows of a rotation: of length 1, at right angles");
     skein_status status = sk_world_touch(world);
     if (status) return status;
     const sk_body *body = object->as.body;

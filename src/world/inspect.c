@@ -93,8 +93,7 @@ skein_status skein_constraint_evaluate(skein_world *world, skein_handle object, 
 }
 
 skein_status skein_constraint_operations(skein_world *world, skein_handle object, size_t index,
-                                         skein_operation *operations, double *derivatives, size_t most,
-                                         size_t *count) {
+                                         skein_operation *operations, double *derivatives, size_t most, size_t *count) {
     SK_NEED(world, world);
     SK_NEED(world, count);
     if (most) SK_NEED(world, operations);

@@ -6,7 +6,8 @@
 
 bool sk_motion_is_leash(const sk_motion *motion) {
     const sk_motion_common *common = motion->common;
-    return common->enabled && (common->pull > 0 || common->max_distance < SK_UNBOUNDED || common->backstop < SK_UNBOUNDED);
+    return common->enabled &&
+           (common->pull > 0 || common->max_distance < SK_UNBOUNDED || common->backstop < SK_UNBOUNDED);
 }
 
 bool sk_world_has_leashes(const skein_world *world) {
@@ -33,7 +34,8 @@ static void find_normals(const skein_world *world, const double (*place)[3], dou
 static bool find_places(skein_world *world, double time, double (*place)[3]) {
     for (size_t i = 0; i < world->particles.count; i++) place[i][0] = place[i][1] = place[i][2] = NAN;
     if (!sk_world_lead(world, time)) return false;
-    for (size_t i = 0; i < world->led.count; i++) memcpy(place[world->led.data[i].particle], world->led.data[i].place, sizeof *place);
+    for (size_t i = 0; i < world->led.count; i++)
+        memcpy(place[world->led.data[i].particle], world->led.data[i].place, sizeof *place);
     return true;
 }
 

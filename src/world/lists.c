@@ -82,8 +82,7 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
     contact_list list = {.out = out, .most = most};
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
-        if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled)
-            continue;
+        if (object->category != SKEIN_COLLIDER || !object->as.collider->common->enabled) continue;
         list.collider = sk_handle_at(world, i);
         const char *on = object->as.collider->common->on;
         for (size_t at = 0, end; sk_world_next_run(world, on, &at, &list.first, &end);)

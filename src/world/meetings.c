@@ -49,10 +49,13 @@ void sk_world_ease_meetings(skein_world *world, const sk_body *body) {
 }
 
 void sk_world_ease_changed(skein_world *world, const sk_object *object, const char *field) {
-    static const char *const of_rule[] = {"thickness", "enabled", "on", "ignore"}, *const of_body[] = {"contact.thickness", "name", "groups"};
+    static const char *const of_rule[] = {"thickness", "enabled", "on", "ignore"}, *const of_body[] = {
+                                                                                       "contact.thickness", "name",
+                                                                                       "groups"};
     const bool is_rule = object->category == SKEIN_FORCE && object->as.force->type->meeting;
     for (size_t i = 0; is_rule && i < sizeof of_rule / sizeof *of_rule; i++)
-        if (!strcmp(field, of_rule[i])) object->as.force->easing.asks = 0, object->as.force->easing.asks_end = UINT32_MAX;
+        if (!strcmp(field, of_rule[i]))
+            object->as.force->easing.asks = 0, object->as.force->easing.asks_end = UINT32_MAX;
     for (size_t i = 0; object->category == SKEIN_BODY && i < sizeof of_body / sizeof *of_body; i++)
         if (!strcmp(field, of_body[i])) sk_world_ease_meetings(world, object->as.body);
 }
@@ -64,8 +67,11 @@ static size_t list_bodies(const skein_world *world, sk_meeting_body *bodies) {
         const sk_object *object = world->objects.data[i];
         if (object->category != SKEIN_BODY) continue;
         size_t first = object->as.body->first_particle;
-        bodies[count++] = (sk_meeting_body){first, first + object->as.body->particle_count, object->common.plain.name,
-                                            object->common.plain.groups, sk_object_number(object, "contact.thickness"),
+        bodies[count++] = (sk_meeting_body){first,
+                                            first + object->as.body->particle_count,
+                                            object->common.plain.name,
+                                            object->common.plain.groups,
+                                            sk_object_number(object, "contact.thickness"),
                                             sk_object_number(object, "contact.friction")};
     }
     return count;
@@ -125,10 +131,11 @@ static void tell_of_crowded(skein_world *world, const sk_meeting_parts *parts) {
         double edge, thickness;
         const sk_meeting_body *body = force->type->meeting->crowded(force, &world->allocator, parts, &edge, &thickness);
         if (body)
-            sk_world_log(world, SKEIN_LOG_WARNING,
-                         "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which can take "
-                         "several times as long as a thickness of %.1g m (its contact.thickness, or this force's thickness)",
-                         force->label, body->name[0] ? body->name : "a body", thickness, edge, 0.25 * edge);
+            sk_world_log(
+                world, SKEIN_LOG_WARNING,
+                "%s: %s is %.2g m thick, and its edges are %.2g m long in the mean: all of it is near dozens of others, which can take "
+                "several times as long as a thickness of %.1g m (its contact.thickness, or this force's thickness)",
+                force->label, body->name[0] ? body->name : "a body", thickness, edge, 0.25 * edge);
     }
 }
 
@@ -157,7 +164,8 @@ static void mark_sleepers(const skein_world *world, bool asleep, uint8_t *presen
     for (size_t i = 0; i < all->count; i++) presence[i] = asleep && all->presence[i] == SK_ASLEEP ? SK_HERE : SK_ASIDE;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_body *body = sk_world_body_at(world, i);
-        if (body && sk_world_stands(world, body)) memset(presence + body->first_particle, SK_HERE, body->particle_count);
+        if (body && sk_world_stands(world, body))
+            memset(presence + body->first_particle, SK_HERE, body->particle_count);
     }
 }
 
@@ -189,14 +197,16 @@ static bool count_among_sleepers(skein_world *world, size_t *count) {
     const size_t rules = count_those_that_meet(world);
     bool good = true;
     size_t all = 0;
-    for (size_t i = 0; i < world->rules.forces.count && good && !world->sleepers_known && world->particles.asleep_count; i++) {
+    for (size_t i = 0; i < world->rules.forces.count && good && !world->sleepers_known && world->particles.asleep_count;
+         i++) {
         const sk_force *force = world->rules.forces.data[i];
         if (!*force->enabled || !force->type->meeting) continue;
         for (int asleep = 1; asleep >= 0 && good; asleep--) { // what is pinned alone is counted already
             sk_force own;
             size_t its = 0;
             good = prepare_for_sleepers(world, force, rules, asleep, &own) &&
-                   force->type->meeting->crossings(&own, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, &its);
+                   force->type->meeting->crossings(&own, &world->allocator, world->particles.vector[SK_X],
+                                                   world->particles.slot_of, &its);
             end_for_sleepers(world, &own);
             all += asleep ? its : (size_t)0 - its;
         }
@@ -226,7 +236,8 @@ void sk_world_tell_of_meetings(skein_world *world) {
     for (size_t i = 0; i < world->rules.forces.count; i++) {
         sk_force *force = world->rules.forces.data[i];
         bool first = false;
-        if (*force->enabled && force->type->meeting) world->contact_overflows += force->type->meeting->gave_up(force, &first);
+        if (*force->enabled && force->type->meeting)
+            world->contact_overflows += force->type->meeting->gave_up(force, &first);
         if (first)
             sk_world_log(world, SKEIN_LOG_WARNING,
                          "%s: more pairs were near each other than there is room for, and nothing touched for a substep "
@@ -239,10 +250,12 @@ void sk_world_end_meeting(skein_world *world, sk_force *force) {
     if (force->type->meeting) force->type->meeting->release(force, &world->allocator);
 }
 
-static bool list_contacts(skein_world *world, sk_force *force, size_t object, skein_surface_contact *out, size_t most, size_t *count) {
+static bool list_contacts(skein_world *world, sk_force *force, size_t object, skein_surface_contact *out, size_t most,
+                          size_t *count) {
     size_t own = 0, room = most > *count ? most - *count : 0;
     skein_surface_contact *to = room ? out + *count : NULL;
-    if (!force->type->meeting->touching(force, &world->allocator, world->particles.vector[SK_X], world->particles.slot_of, to, room, &own))
+    if (!force->type->meeting->touching(force, &world->allocator, world->particles.vector[SK_X],
+                                        world->particles.slot_of, to, room, &own))
         return false;
     for (size_t k = 0; k < own && k < room; k++) to[k].rule = sk_handle_at(world, object);
     *count += own;
@@ -250,12 +263,13 @@ static bool list_contacts(skein_world *world, sk_force *force, size_t object, sk
 }
 
 /* Of those that sleep, and none of what is pinned with itself: that is listed already. */
-static bool list_contacts_of_sleepers(skein_world *world, const sk_force *force, size_t object, skein_surface_contact *out, size_t most,
-                                      size_t *count) {
+static bool list_contacts_of_sleepers(skein_world *world, const sk_force *force, size_t object,
+                                      skein_surface_contact *out, size_t most, size_t *count) {
     const size_t rules = count_those_that_meet(world);
     sk_force own;
     size_t found = 0;
-    bool good = prepare_for_sleepers(world, force, rules, true, &own) && list_contacts(world, &own, object, NULL, 0, &found);
+    bool good =
+        prepare_for_sleepers(world, force, rules, true, &own) && list_contacts(world, &own, object, NULL, 0, &found);
     skein_surface_contact *all = good ? sk_allocate(&world->allocator, (found + 1) * sizeof *all) : NULL;
     const size_t room = found;
     found = 0;
@@ -284,7 +298,8 @@ skein_status skein_surface_contacts_copy(skein_world *world, skein_surface_conta
     if (!status) status = sk_world_prepare_meetings(world, error);
     for (size_t i = 0; i < world->objects.count && !status; i++) {
         const sk_object *object = world->objects.data[i];
-        if (object->category != SKEIN_FORCE || !*object->as.force->enabled || !object->as.force->type->meeting) continue;
+        if (object->category != SKEIN_FORCE || !*object->as.force->enabled || !object->as.force->type->meeting)
+            continue;
         sk_force *force = object->as.force;
         if (!list_contacts(world, force, i, out, most, count) ||
             (world->particles.asleep_count && !list_contacts_of_sleepers(world, force, i, out, most, count)))

@@ -80,14 +80,15 @@ typedef struct wording {
 static skein_status choose_words(void *data, const char *words) {
     const wording *w = data;
     if (w->body) return sk_body_choose_words(w->world, w->body, w->position, words, w->chosen, w->error);
-    return sk_fail(w->error, SKEIN_ERROR_NAME, "pins",
-                   "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; words are about one body: say "
-                   "which it is \"on\"; without \"pins\" it leads all that are pinned",
-                   words);
+    return sk_fail(
+        w->error, SKEIN_ERROR_NAME, "pins",
+        "'%s': expected numbers, \"box x y z x y z\" or \"sphere x y z radius\"; words are about one body: say "
+        "which it is \"on\"; without \"pins\" it leads all that are pinned",
+        words);
 }
 
 skein_status sk_world_choose(skein_world *world, const sk_body *body, size_t first, size_t count, const char *text,
-                           bool *chosen, skein_error *error) {
+                             bool *chosen, skein_error *error) {
     sk_allocator *allocator = &world->allocator;
     bool vertices = body && body->vertex_count;
     size_t numbers = vertices ? body->vertex_count : count;
@@ -123,21 +124,23 @@ static void find_range(const skein_world *world, const char *on, size_t *first, 
     *first = on[0] ? SIZE_MAX : 0, *count = on[0] ? 0 : world->particles.count;
     for (const sk_body *body; on[0] && (body = sk_world_next_named(world, on, &cursor));) {
         if (body->first_particle < *first) *first = body->first_particle;
-        if ((size_t)body->first_particle + body->particle_count > end) end = (size_t)body->first_particle + body->particle_count;
+        if ((size_t)body->first_particle + body->particle_count > end)
+            end = (size_t)body->first_particle + body->particle_count;
     }
     if (end > *first) *count = end - *first;
 }
 
 /* Marks those of its particles that a motion leads, from `first` on; with `pins`, those of each body that these name. */
-static skein_status choose_all(skein_world *world, const char *on, const char *pins, size_t first, size_t count, bool *chosen,
-                           skein_error *error) {
+static skein_status choose_all(skein_world *world, const char *on, const char *pins, size_t first, size_t count,
+                               bool *chosen, skein_error *error) {
     skein_status status = SKEIN_OK;
     size_t cursor = 0;
     if (!on[0] && pins[0]) return sk_world_choose(world, NULL, first, count, pins, chosen, error);
     if (!on[0]) memset(chosen, 1, count * sizeof *chosen);
     for (const sk_body *body; on[0] && !status && (body = sk_world_next_named(world, on, &cursor));) {
         bool *its = chosen + (body->first_particle - first);
-        if (pins[0]) status = sk_world_choose(world, body, body->first_particle, body->particle_count, pins, its, error);
+        if (pins[0])
+            status = sk_world_choose(world, body, body->first_particle, body->particle_count, pins, its, error);
         else memset(its, 1, body->particle_count * sizeof *its);
     }
     return status;
@@ -180,8 +183,8 @@ static skein_status find_colliders(const skein_world *world, sk_motion *motion, 
         for (size_t i = 0; i < world->rules.colliders.count && !found; i++)
             found = sk_word_is(name, world->rules.colliders.data[i]->common->name);
         if (!found)
-            return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no collider of the name '%.*s'%s", (int)name.length,
-                           name.at, group_words(world, name));
+            return sk_fail(error, SKEIN_ERROR_NAME, motion->label, "there is no collider of the name '%.*s'%s",
+                           (int)name.length, name.at, group_words(world, name));
     }
     motion->knows_colliders = true;
     return SKEIN_OK;
@@ -196,14 +199,15 @@ static const sk_collider *carrier_named(const skein_world *world, const char *na
     for (size_t i = 0; i < world->rules.colliders.count; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
         *meshes += collider->type->surface != NULL;
-        if (name[0] ? !found && !strcmp(collider->common->name, name) : collider->type->surface != NULL) found = collider;
+        if (name[0] ? !found && !strcmp(collider->common->name, name) : collider->type->surface != NULL)
+            found = collider;
     }
     return name[0] || *meshes == 1 ? found : NULL;
 }
 
 /* The collider whose triangles a motion follows. One that was there once may be removed: then nobody is led. */
-static skein_status find_carrier(const skein_world *world, const sk_motion *motion, const sk_collider **collider, double *offset,
-                                 skein_error *error) {
+static skein_status find_carrier(const skein_world *world, const sk_motion *motion, const sk_collider **collider,
+                                 double *offset, skein_error *error) {
     size_t meshes;
     *collider = NULL;
     if (!motion->type->carrier) return SKEIN_OK;
@@ -213,17 +217,21 @@ static skein_status find_carrier(const skein_world *world, const sk_motion *moti
     if (!name[0])
         return sk_fail(error, SKEIN_ERROR_NAME, "to", "expected the name of a mesh collider: there are %zu", meshes);
     if (!*collider && sk_world_has_group(world, sk_word_of(name)))
-        return sk_fail(error, SKEIN_ERROR_NAME, "to", "'%s' is a group of bodies: expected the name of one mesh collider", name);
+        return sk_fail(error, SKEIN_ERROR_NAME, "to",
+                       "'%s' is a group of bodies: expected the name of one mesh collider", name);
     if (!*collider)
-        return sk_fail(error, SKEIN_ERROR_NAME, "to", "there is no collider of the name '%s' (to a body leads a constraint \"attachment\")", name);
-    return sk_fail(error, SKEIN_ERROR_VALUE, "to", "the collider '%s' is a %s, which has no triangles: take one of type \"mesh\"", name,
+        return sk_fail(error, SKEIN_ERROR_NAME, "to",
+                       "there is no collider of the name '%s' (to a body leads a constraint \"attachment\")", name);
+    return sk_fail(error, SKEIN_ERROR_VALUE, "to",
+                   "the collider '%s' is a %s, which has no triangles: take one of type \"mesh\"", name,
                    (*collider)->type->kind.name);
 }
 
 static skein_status refuse_frame(const sk_motion *motion, skein_error *error) {
     const skein_field *field = sk_motion_refused(motion->type, motion->common);
     if (!field) return SKEIN_OK;
-    return sk_fail(error, SKEIN_ERROR_VALUE, field->name, "a motion of type \"%s\" is no moving frame: give this to the one that leads the collider",
+    return sk_fail(error, SKEIN_ERROR_VALUE, field->name,
+                   "a motion of type \"%s\" is no moving frame: give this to the one that leads the collider",
                    motion->type->kind.name);
 }
 
@@ -234,7 +242,8 @@ static void place_seat(const sk_seats *seats, size_t i, double time, double plac
 static bool have_seats(const sk_motion *motion, const sk_collider *collider, double offset) {
     const sk_seats *seats = &motion->seats;
     return seats->data && seats->collider == collider && seats->count == motion->count && !(seats->offset < offset) &&
-           !(seats->offset > offset) && !(seats->start < motion->common->start) && !(seats->start > motion->common->start) &&
+           !(seats->offset > offset) && !(seats->start < motion->common->start) &&
+           !(seats->start > motion->common->start) &&
            !memcmp(seats->particle, motion->particle, motion->count * sizeof *seats->particle);
 }
 
@@ -252,9 +261,13 @@ static skein_status find_seats(skein_world *world, sk_motion *motion, skein_erro
     if (!collider) return SKEIN_OK;
     sk_release(allocator, motion->seats.data);
     sk_release(allocator, motion->seats.particle);
-    motion->seats = (sk_seats){NULL, collider, sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.data),
-                               sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.particle), motion->count,
-                               motion->common->start, offset};
+    motion->seats = (sk_seats){NULL,
+                               collider,
+                               sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.data),
+                               sk_allocate(allocator, (motion->count + 1) * sizeof *motion->seats.particle),
+                               motion->count,
+                               motion->common->start,
+                               offset};
     if (!motion->seats.data || !motion->seats.particle) {
         motion->seats.count = 0;
         return sk_fail_memory(error, "the seats of a motion");
@@ -286,7 +299,8 @@ skein_status sk_world_check_motion(skein_world *world, const sk_motion *motion, 
     size_t first, count;
     find_range(world, on, &first, &count);
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
-    status = chosen ? choose_all(world, on, pins, first, count, chosen, error) : sk_fail_memory(error, "the pins of a motion");
+    status = chosen ? choose_all(world, on, pins, first, count, chosen, error)
+                    : sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
     return status;
 }
@@ -304,8 +318,8 @@ static skein_status find_map(skein_world *world, sk_motion *motion, skein_error 
     sk_release(&world->allocator, motion->share);
     motion->share = NULL;
     if (status) return status;
-    return sk_fail(error, SKEIN_ERROR_VALUE, "map", "%zu numbers, and it leads %zu particles, or could: expected one for each", count,
-                   motion->count);
+    return sk_fail(error, SKEIN_ERROR_VALUE, "map",
+                   "%zu numbers, and it leads %zu particles, or could: expected one for each", count, motion->count);
 }
 
 static skein_status find_particles(skein_world *world, sk_motion *motion, skein_error *error) {
@@ -314,8 +328,9 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     size_t first, count;
     find_range(world, motion->common->on, &first, &count);
     bool *chosen = sk_allocate(&world->allocator, count * sizeof *chosen);
-    skein_status status = chosen ? choose_all(world, motion->common->on, motion->common->pins, first, count, chosen, error)
-                                 : sk_fail_memory(error, "the pins of a motion");
+    skein_status status = chosen
+                              ? choose_all(world, motion->common->on, motion->common->pins, first, count, chosen, error)
+                              : sk_fail_memory(error, "the pins of a motion");
     if (!status && !list_particles(&world->allocator, motion, first, count, chosen))
         status = sk_fail_memory(error, "the pins of a motion");
     sk_release(&world->allocator, chosen);
@@ -330,7 +345,8 @@ static skein_status find_particles(skein_world *world, sk_motion *motion, skein_
     if (!status) status = find_colliders(world, motion, error);
     if (!status) status = find_map(world, motion, error);
     if (!status) status = find_seats(world, motion, error);
-    if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0] && !sk_world_has_leashes(world))
+    if (!status && !held && count && motion->common->enabled && !motion->common->colliders[0] &&
+        !sk_world_has_leashes(world))
         sk_world_log(world, SKEIN_LOG_WARNING, "%s: none of the particles that it is to lead is pinned: pin them",
                      motion->label);
     return status;
@@ -346,7 +362,8 @@ void sk_world_seat_all(skein_world *world) {
 
 /* Whether it is one of the fields that are looked at here. */
 static bool names_field(const char *where) {
-    static const char *const fields[] = {"pins", "to", "colliders", "inertia", "jump", "jump_turn", "jump_times", "map"};
+    static const char *const fields[] = {"pins", "to",        "colliders",  "inertia",
+                                         "jump", "jump_turn", "jump_times", "map"};
     for (size_t i = 0; i < sizeof fields / sizeof *fields; i++)
         if (!strcmp(where, fields[i])) return true;
     return false;

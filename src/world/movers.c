@@ -14,7 +14,8 @@ static bool has_name(const char *text, const char *name) {
     const size_t length = strlen(name);
     for (bool in_word = false; *text; text++) {
         const bool letter = isalnum((unsigned char)*text) || *text == '_' || *text == '.';
-        if (letter && !in_word && !strncmp(text, name, length) && !isalnum((unsigned char)text[length]) && text[length] != '_')
+        if (letter && !in_word && !strncmp(text, name, length) && !isalnum((unsigned char)text[length]) &&
+            text[length] != '_')
             return true;
         in_word = letter;
     }
@@ -53,7 +54,8 @@ static bool moves_on(const sk_object *object, const sk_pose pose[2]) {
 static double reach_of(const sk_pose *pose, const sk_sleeper *s) {
     const double from[3] = {(double)pose->position.x, (double)pose->position.y, (double)pose->position.z};
     double far = 0;
-    for (int k = 0; k < 3; k++) far += pow(fmax(fabs((double)s->low[k] - from[k]), fabs((double)s->high[k] - from[k])), 2);
+    for (int k = 0; k < 3; k++)
+        far += pow(fmax(fabs((double)s->low[k] - from[k]), fabs((double)s->high[k] - from[k])), 2);
     return sqrt(far);
 }
 
@@ -61,7 +63,8 @@ static double reach_of(const sk_pose *pose, const sk_sleeper *s) {
 static double way_between(const sk_pose *a, const sk_pose *b, const sk_sleeper *s) {
     const double way[3] = {(double)(b->position.x - a->position.x), (double)(b->position.y - a->position.y),
                            (double)(b->position.z - a->position.z)};
-    const double axis[3] = {(double)(b->axis.x - a->axis.x), (double)(b->axis.y - a->axis.y), (double)(b->axis.z - a->axis.z)};
+    const double axis[3] = {(double)(b->axis.x - a->axis.x), (double)(b->axis.y - a->axis.y),
+                            (double)(b->axis.z - a->axis.z)};
     double turned = 0;
     for (int i = 0; i < 9; i++) turned += pow((double)b->rotation[i] - (double)a->rotation[i], 2);
     for (int k = 0; k < 3; k++) turned += axis[k] * axis[k];
@@ -70,9 +73,11 @@ static double way_between(const sk_pose *a, const sk_pose *b, const sk_sleeper *
 
 /* What is met on the way from one pose to the other is no farther from one of them than half that way. Vertices that are led are
  * looked for where they are. */
-static bool is_met_by(const skein_world *world, const sk_collider *collider, const sk_pose pose[2], const sk_sleeper *s, double dt) {
+static bool is_met_by(const skein_world *world, const sk_collider *collider, const sk_pose pose[2], const sk_sleeper *s,
+                      double dt) {
     const double spins = dt * fabs(collider->common->spin) * reach_of(&pose[0], s);
-    const double clear = 2 * collider->common->thickness + way_between(&pose[0], &pose[1], s) + spins + way_of_vertices(collider);
+    const double clear =
+        2 * collider->common->thickness + way_between(&pose[0], &pose[1], s) + spins + way_of_vertices(collider);
     for (int i = 0; i < 2; i++)
         if (!sk_collider_is_far(world, collider, &pose[i], s->low, s->high, clear) &&
             !(sk_collider_distance(world, collider, &pose[i], s->body) > clear))
@@ -102,7 +107,8 @@ bool sk_is_driven(const skein_world *world, const sk_sleeper *s) {
             const char *on = object->common.plain.on;
             const bool pushes = force->type->phase == SK_PUSHES || force->type->phase == SK_MEETS;
             const bool steers = !pushes || force->type->radius || sk_force_particle(force) >= 0;
-            if ((steers || may_change(object)) && (!on[0] || sk_names_mean(on, s->common->name, s->common->groups))) return true;
+            if ((steers || may_change(object)) && (!on[0] || sk_names_mean(on, s->common->name, s->common->groups)))
+                return true;
         }
         if (object->category == SKEIN_CONSTRAINT && object->common.plain.enabled && may_change(object)) {
             const sk_batch *batch = object->as.batch;

@@ -34,7 +34,8 @@ void sk_collider_find_poses(const skein_world *world, const sk_collider *collide
     pose[1] = sk_collider_pose_at(&then, world->time + dt);
 }
 
-double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body) {
+double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose,
+                            const sk_body *body) {
     const sk_particles *all = &world->particles;
     double least = INFINITY;
     for (size_t first = 0; first < body->particle_count; first += SK_LANES) {
@@ -51,8 +52,8 @@ double sk_collider_distance(const skein_world *world, const sk_collider *collide
     return least;
 }
 
-bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
-                        double clear) {
+bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3],
+                        const real high[3], double clear) {
     real middle[3][SK_LANES];
     double half = 0;
     sk_sixteen_contacts contacts;

@@ -11,9 +11,10 @@ void sk_box_widen(const sk_particles *all, const sk_body *body, real ahead, real
  * (sk_world_look_ahead). */
 void sk_collider_find_poses(const skein_world *world, const sk_collider *collider, double dt, sk_pose pose[2]);
 /* How far apart the particles of a body and a collider are at a pose. */
-double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const sk_body *body);
+double sk_collider_distance(const skein_world *world, const sk_collider *collider, const sk_pose *pose,
+                            const sk_body *body);
 /* Whether all of a box is farther from a collider than `clear`. Not known where its distance is that of a formula, which is none. */
-bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3], const real high[3],
-                        double clear);
+bool sk_collider_is_far(const skein_world *world, const sk_collider *collider, const sk_pose *pose, const real low[3],
+                        const real high[3], double clear);
 
 #endif

@@ -18,7 +18,8 @@ static real reach_of_rules(const skein_world *world) {
         if (force->type->meeting) reach = fmax(reach, 2 * sk_object_number(object, "thickness"));
     }
     for (size_t i = 0; i < world->objects.count && reach >= 0; i++)
-        if (sk_world_body_at(world, i)) reach = fmax(reach, 2 * sk_object_number(world->objects.data[i], "contact.thickness"));
+        if (sk_world_body_at(world, i))
+            reach = fmax(reach, 2 * sk_object_number(world->objects.data[i], "contact.thickness"));
     return (real)reach;
 }
 
@@ -36,7 +37,8 @@ static bool is_unmoving(const skein_world *world, const sk_body *body) {
 
 bool sk_world_stands(const skein_world *world, const sk_body *body) {
     bool stands = body->enabled && !body->rest.asleep;
-    for (size_t i = 0; i < body->particle_count && stands; i++) stands = world->particles.pinned[body->first_particle + i];
+    for (size_t i = 0; i < body->particle_count && stands; i++)
+        stands = world->particles.pinned[body->first_particle + i];
     return stands;
 }
 
@@ -69,7 +71,8 @@ static bool list_bodies(skein_world *world, double ahead, sk_neighbours *r) {
         *s = (sk_sleeper){.body = body, .common = &world->objects.data[i]->common.plain, .index = (uint32_t)r->count};
         r->island[r->count] = (uint32_t)r->count;
         sk_box_begin(s->low, s->high);
-        if (body->rest.roused) memcpy(s->low, body->rest.low, sizeof s->low), memcpy(s->high, body->rest.high, sizeof s->high);
+        if (body->rest.roused)
+            memcpy(s->low, body->rest.low, sizeof s->low), memcpy(s->high, body->rest.high, sizeof s->high);
         sk_box_widen(&world->particles, body, (real)ahead, s->low, s->high);
         s->unmoving = is_unmoving(world, body);
         r->count++;
@@ -116,7 +119,8 @@ static bool follow_pins(const sk_neighbours *r, double dt, bool *loose) {
 static bool is_loose(const skein_world *world, uint32_t particle, bool loose_led) {
     const sk_particles *all = &world->particles;
     const size_t slot = all->slot_of[particle];
-    return all->vector[SK_X][slot].w > 0 || loose_led || memcmp(&all->vector[SK_X][slot], &all->vector[SK_PREVIOUS][slot], 3 * sizeof(real)) != 0;
+    return all->vector[SK_X][slot].w > 0 || loose_led ||
+           memcmp(&all->vector[SK_X][slot], &all->vector[SK_PREVIOUS][slot], 3 * sizeof(real)) != 0;
 }
 
 /* Joins bodies that a constraint of the program's is on. */
@@ -129,7 +133,9 @@ static void join_linked(const sk_neighbours *r, bool loose_led) {
         bool loose = false;
         for (size_t k = 0; k < batch->count * batch->arity; k++) {
             sk_sleeper *s = find_owner(r, batch->particle[k], last);
-            if (!s) loose |= sk_particle_counts(&world->particles, batch->particle[k]) && is_loose(world, batch->particle[k], loose_led);
+            if (!s)
+                loose |= sk_particle_counts(&world->particles, batch->particle[k]) &&
+                         is_loose(world, batch->particle[k], loose_led);
             if (!s || s == last) continue;
             if (!first) first = s;
             sk_union_join(r->island, first->index, s->index);

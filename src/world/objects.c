@@ -162,17 +162,20 @@ skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, c
         unmake_object(world, object);
         return sk_fail_memory(error, type->kind.name);
     }
-    *force = (sk_force){
-        .type = type, .params = object->params, .label = object->label, .enabled = &object->common.plain.enabled,
-        .on = &object->common.plain.on, .easing = {.asks_end = UINT32_MAX}};
+    *force = (sk_force){.type = type,
+                        .params = object->params,
+                        .label = object->label,
+                        .enabled = &object->common.plain.enabled,
+                        .on = &object->common.plain.on,
+                        .easing = {.asks_end = UINT32_MAX}};
     world->rules.forces.data[world->rules.forces.count++] = force;
     object->as.force = force;
     return finish_object(world, object, handle);
 }
 
 /* Its mesh, and what is wrong with that. */
-static skein_status take_mesh(skein_world *world, const sk_collider_type *type, sk_object *object, const skein_mesh *mesh,
-                              skein_error *error) {
+static skein_status take_mesh(skein_world *world, const sk_collider_type *type, sk_object *object,
+                              const skein_mesh *mesh, skein_error *error) {
     if (!type->take && mesh)
         return sk_fail(error, SKEIN_ERROR_MESH, "", "a %s is made without a mesh", type->kind.name);
     sk_faults_text faults = {""};
@@ -342,8 +345,7 @@ skein_status sk_world_add_body(skein_world *world, const sk_body_type *type, con
     skein_error *error = sk_world_error(world);
     sk_object *object;
     skein_status status = sk_world_settle_presence(world, error); // before indices are used again
-    if (!status)
-        status = make_with_presets(world, &type->kind, type->making, type->presets, settings, &object, error);
+    if (!status) status = make_with_presets(world, &type->kind, type->making, type->presets, settings, &object, error);
     if (status) return status;
     sk_body *body = sk_allocate(&world->allocator, sizeof *body);
     if (!body) {
@@ -379,7 +381,8 @@ skein_status sk_world_set_method(skein_world *world, const sk_method_type *type,
     skein_error *error = sk_world_error(world);
     void *params = sk_allocate(&world->allocator, type->kind.params_size);
     if (!params) return sk_fail_memory(error, type->kind.name);
-    skein_status status = sk_settings_apply(&world->allocator, &type->kind, NULL, params, NULL, 0, NULL, settings, error);
+    skein_status status =
+        sk_settings_apply(&world->allocator, &type->kind, NULL, params, NULL, 0, NULL, settings, error);
     if (status) {
         sk_release(&world->allocator, params);
         return status;
@@ -473,8 +476,7 @@ size_t skein_object_count(const skein_world *world, skein_category category) {
     if (!world) return 0;
     if (category == SKEIN_METHOD) return 1;
     size_t count = 0;
-    for (size_t i = 0; i < world->objects.count; i++)
-        count += world->objects.data[i]->category == category;
+    for (size_t i = 0; i < world->objects.count; i++) count += world->objects.data[i]->category == category;
     return count;
 }
 

@@ -29,7 +29,7 @@ enum {
     THE_CLOCK,
     A_RESET,
     A_STOP,
-    A_CUT, /* from version 2 on */
+    A_CUT,   /* from version 2 on */
     VERTICES /* of a collider; from version 3 on */
 };
 

@@ -71,9 +71,9 @@ typedef struct segment_job {
     size_t chunk_rows, chunk_count, threads;
     size_t head; /* ops that the first chunk has more, for those by which its ops lag and which it leaves to others */
     size_t first_chunk[MOST_THREADS + 1]; /* of each thread, where there are several */
-    size_t ahead;               /* chunks whose last iteration must be over before a chunk begins the next */
-    size_t iterations_abreast;       /* how many iterations one thread alone has under way */
-    _Atomic uint32_t *progress; /* ops done, of each chunk, where there are several threads */
+    size_t ahead;                         /* chunks whose last iteration must be over before a chunk begins the next */
+    size_t iterations_abreast;            /* how many iterations one thread alone has under way */
+    _Atomic uint32_t *progress;           /* ops done, of each chunk, where there are several threads */
 } segment_job;
 
 /* Free ops of slots, one after the other over each tile of [begin, end). */

@@ -102,14 +102,13 @@ static skein_status find_effect(skein_world *world, const char *path, skein_valu
     effect->force = sk_allocate(allocator, (world->rules.forces.count + 1) * sizeof *effect->force);
     if (!effect->stiffness || !effect->damping || !effect->force) return sk_fail_memory(error, "a gradient");
     double x = value.number[k], step = x != 0 ? 1e-4 * fabs(x) : 1e-4, ends[2] = {x + step, x - step};
-    if (!isfinite(x))
-        return sk_fail(error, SKEIN_ERROR_VALUE, path, "it is infinite: there is no derivative by it");
+    if (!isfinite(x)) return sk_fail(error, SKEIN_ERROR_VALUE, path, "it is infinite: there is no derivative by it");
     uint64_t rest = rest_of(world);
     bool same = true, uniform = true;
     for (int end = 0; end < 2; end++) {
         skein_status status = set_number(world, path, value, k, ends[end]);
         if (status && end) status = set_number(world, path, value, k, ends[1] = x); // at its least already
-        if (status) return status; // and nothing was set
+        if (status) return status;                                                  // and nothing was set
         same &= rest_of(world) == rest;
         uniform &= add_present(world, effect, (end ? -1 : 1));
     }
@@ -124,12 +123,12 @@ static skein_status find_effect(skein_world *world, const char *path, skein_valu
     }
     bool nothing = is_nothing(world, effect);
     if (same && uniform && pulls(world, effect) && !nothing) return SKEIN_OK;
-    return sk_fail(error, SKEIN_ERROR_VALUE, path,
-                   !uniform ? "a force that is not uniform has no gradient yet"
-                   : !same  ? "it changes masses, rest lengths or who takes part: there is no gradient by such a field yet"
-                   : !nothing
-                       ? "what it changes has a stiffness of 0 and takes no part: begin with a small one"
-                       : "nothing that a gradient follows hangs on it: stiffness, damping, gravity, wind and drag are");
+    return sk_fail(
+        error, SKEIN_ERROR_VALUE, path,
+        !uniform   ? "a force that is not uniform has no gradient yet"
+        : !same    ? "it changes masses, rest lengths or who takes part: there is no gradient by such a field yet"
+        : !nothing ? "what it changes has a stiffness of 0 and takes no part: begin with a small one"
+                   : "nothing that a gradient follows hangs on it: stiffness, damping, gravity, wind and drag are");
 }
 
 static size_t count_numbers(skein_world *world, const char *const *fields, skein_status *status) {
@@ -178,10 +177,10 @@ typedef struct journey {
     sk_adjoint a;
     skein_world *world;
     const skein_gradient_desc *desc;
-    double start;             /* s */
-    size_t segment;           /* steps of one */
-    kept_state *checkpoints;  /* at the start of each segment */
-    kept_state *ends;         /* of the present segment's steps, and its start */
+    double start;            /* s */
+    size_t segment;          /* steps of one */
+    kept_state *checkpoints; /* at the start of each segment */
+    kept_state *ends;        /* of the present segment's steps, and its start */
     size_t checkpoint_count, end_count;
     double *numbers; /* four times 3 a particle: positions, velocities, and the derivatives by them */
     double value;
@@ -303,7 +302,8 @@ static size_t choose_segment(const journey *j) {
     size_t looks = 0, steps = j->desc->steps, most = j->desc->most_bytes ? j->desc->most_bytes : (size_t)256 << 20;
     const sk_plan *plan = &j->world->plan;
     for (size_t r = 0; r < plan->count; r++) looks += sk_adjoint_looks(plan, r);
-    double bytes = (double)(looks + 1) * (double)steps * 2 * sizeof(sk_vec4) * (double)j->world->particles.slot_capacity;
+    double bytes =
+        (double)(looks + 1) * (double)steps * 2 * sizeof(sk_vec4) * (double)j->world->particles.slot_capacity;
     return bytes <= (double)most ? steps : (size_t)ceil(sqrt((double)steps));
 }
 
@@ -353,21 +353,23 @@ static skein_status check(skein_world *world, const skein_gradient_desc *desc) {
     if (world->device)
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient", "gradients are worked out on the processor");
     if (sk_world_tears(world))
-        return sk_fail(error, SKEIN_ERROR_VALUE, "gradient", "a body that tears has no gradient: set its stretch.tear to 0");
+        return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
+                       "a body that tears has no gradient: set its stretch.tear to 0");
     if (world->pins.count)
         return sk_fail(error, SKEIN_ERROR_VALUE, "gradient",
                        "%zu places of pins wait for the next step: a gradient leads pins by motions alone",
                        world->pins.count);
     for (size_t i = 0; i < world->motions.count; i++) {
         const sk_motion_common *common = world->motions.data[i]->common;
-        if (common->enabled && (common->inertia < 1 || common->jump < SK_UNBOUNDED || common->jump_turn < 180 ||
-                                common->jump_times[0]))
+        if (common->enabled &&
+            (common->inertia < 1 || common->jump < SK_UNBOUNDED || common->jump_turn < 180 || common->jump_times[0]))
             return sk_fail(error, SKEIN_ERROR_VALUE, world->motions.data[i]->label,
                            "bodies that a motion carries along (inertia under 1, or jumps) have no gradient yet");
     }
     for (size_t i = 0; i < world->objects.count; i++)
         if (world->objects.data[i]->category == SKEIN_BODY && world->objects.data[i]->common.plain.sleep > 0)
-            return sk_fail(error, SKEIN_ERROR_VALUE, world->objects.data[i]->label, "what falls asleep has no gradient: set its sleep to 0");
+            return sk_fail(error, SKEIN_ERROR_VALUE, world->objects.data[i]->label,
+                           "what falls asleep has no gradient: set its sleep to 0");
     if (!desc->steps || desc->steps > 100000000)
         return sk_fail(error, SKEIN_ERROR_VALUE, "steps", "%zu steps: expected 1 to 100000000", desc->steps);
     return SKEIN_OK;

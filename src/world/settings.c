@@ -11,11 +11,13 @@ static const skein_field body_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths, messages and the names of files"),
     SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there; it stays as it is until it is again"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
-    SK_TEXT(sk_common, groups, "groups", "",
-            "the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it"),
-    SK_REAL(sk_common, sleep, "sleep", "m/s", 0, 0, 1e6,
-            "it falls asleep once it, and all that it may touch, has for half a second not gone farther than that speed would lead: "
-            "it then costs nothing, until something comes near or is changed; 0: never"),
+    SK_TEXT(
+        sk_common, groups, "groups", "",
+        "the names of groups that it is in, commas between them: where rules name bodies, a group's name means all in it"),
+    SK_REAL(
+        sk_common, sleep, "sleep", "m/s", 0, 0, 1e6,
+        "it falls asleep once it, and all that it may touch, has for half a second not gone farther than that speed would lead: "
+        "it then costs nothing, until something comes near or is changed; 0: never"),
 };
 static const skein_field rule_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
@@ -26,8 +28,9 @@ static const skein_field force_fields[] = {
     SK_TEXT(sk_common, name, "name", "", "for paths and messages"),
     SK_BOOL(sk_common, enabled, "enabled", 1, "false: as if it were not there"),
     SK_BOOL(sk_common, visible, "visible", 1, "whether it is drawn"),
-    SK_TEXT(sk_common, on, "on", "",
-            "the names of the bodies, or of groups of them, that it acts on, commas between them; empty: every particle"),
+    SK_TEXT(
+        sk_common, on, "on", "",
+        "the names of the bodies, or of groups of them, that it acts on, commas between them; empty: every particle"),
 };
 
 const skein_field *sk_common_fields(skein_category category, size_t *count) {
@@ -84,8 +87,8 @@ const skein_field *skein_field_find(const skein_kind *kind, const char *name, sk
 }
 
 /* What a choice of the settings stands for comes before all that they say themselves, wherever it is among them. */
-static skein_status apply_presets(sk_allocator *allocator, const skein_kind *kind, const sk_presets *presets, void *params,
-                                  const skein_setting *settings, skein_error *error) {
+static skein_status apply_presets(sk_allocator *allocator, const skein_kind *kind, const sk_presets *presets,
+                                  void *params, const skein_setting *settings, skein_error *error) {
     const skein_field *choice = sk_field_named(kind->fields, kind->field_count, presets->field);
     skein_status status = SKEIN_OK;
     for (; !status && settings && settings->name; settings++)
@@ -258,7 +261,8 @@ skein_status skein_set(skein_world *world, skein_handle handle, const char *name
     }
     if (!same && object) sk_world_ease_changed(world, object, name);
     if (!same) rouse(world, object, name, place);
-    else if (object && object->category == SKEIN_BODY) sk_world_rouse_at(world, object->as.body->first_particle, object->as.body->particle_count);
+    else if (object && object->category == SKEIN_BODY)
+        sk_world_rouse_at(world, object->as.body->first_particle, object->as.body->particle_count);
     world->plan_stale = true;
     world->motions_stale = true;
     const skein_value now = sk_field_load(field, params); // the text given may have been the one that is gone

@@ -130,8 +130,8 @@ bool sk_cut_severs(const void *data, const sk_batch *batch, const uint32_t *part
 typedef struct ways {
     const sk_cut *cut;
     const sk_particles *particles;
-    double *length; /* of each particle; infinite where no way leads */
-    uint32_t *from; /* the anchor that it comes from */
+    double *length;         /* of each particle; infinite where no way leads */
+    uint32_t *from;         /* the anchor that it comes from */
     uint32_t *heap, *place; /* particles, the nearest on top, and of each its place there plus 1 */
     size_t count;
 } ways;

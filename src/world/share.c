@@ -129,8 +129,9 @@ static bool list_bodies(skein_world *world, body_list *list) {
         const sk_body *body = object->as.body;
         bool loose = body->particle_count && !body->triangle_count && !body->grid_rows && !body->batch_count &&
                      sk_field_named(object->kind->fields, object->kind->field_count, "count");
-        list->data[list->count] = (skein_share_body){body->first_particle, body->particle_count, body->enabled, loose,
-                                                     list->count, false, (double)body->particle_count};
+        list->data[list->count] = (skein_share_body){
+            body->first_particle,        body->particle_count, body->enabled, loose, list->count, false,
+            (double)body->particle_count};
         list->count++;
     }
     return list->data != NULL;
@@ -166,7 +167,8 @@ static void join_by_neighbours(const skein_world *world, body_list *list) {
     for (size_t r = 0; r < world->plan.count; r++) {
         const sk_op *op = &world->plan.data[r];
         if (!sk_op_type_of(op)->walks) continue;
-        const sk_group *group = op->group ? op->group : &world->everybody, *seen = op->seen ? op->seen : &world->everybody;
+        const sk_group *group = op->group ? op->group : &world->everybody,
+                       *seen = op->seen ? op->seen : &world->everybody;
         if (has_loose(list, group) || has_loose(list, seen)) {
             show(list, group);
             show(list, seen);
@@ -224,7 +226,8 @@ static const char *what_cannot(skein_world *world, body_list *list) {
     const char *what = NULL;
     if (world->device) return "another device";
     if (sk_world_tears(world)) return "a body that tears";
-    if (list->count ? world->particles.count != list->data[list->count - 1].first + list->data[list->count - 1].count : true)
+    if (list->count ? world->particles.count != list->data[list->count - 1].first + list->data[list->count - 1].count
+                    : true)
         return "particles of no body";
     join_by_constraints(world, list);
     for (size_t r = 0; r < world->plan.count && !what; r++)
@@ -238,10 +241,11 @@ static const char *what_cannot(skein_world *world, body_list *list) {
 
 static skein_status fail_share(const char *what, skein_error *error) {
     if (!what) return SKEIN_OK;
-    return sk_fail(error, SKEIN_ERROR_VALUE, "share",
-                   "several processes cannot share a run with %s: it is of flocks, and of bodies that meet nobody but by "
-                   "rules that look at their neighbours and a flock's, under a method that solves nothing",
-                   what);
+    return sk_fail(
+        error, SKEIN_ERROR_VALUE, "share",
+        "several processes cannot share a run with %s: it is of flocks, and of bodies that meet nobody but by "
+        "rules that look at their neighbours and a flock's, under a method that solves nothing",
+        what);
 }
 
 skein_status sk_world_check_share(skein_world *world, skein_error *error) {

@@ -38,7 +38,8 @@ void sk_body_forget_rest(skein_world *world, sk_body *body) {
 void sk_body_set_asleep(skein_world *world, sk_body *body, bool asleep) {
     sk_body_forget_rest(world, body);
     body->rest.asleep = asleep;
-    sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count, asleep ? SK_ASLEEP : SK_HERE);
+    sk_particles_set_presence(&world->particles, body->first_particle, body->particle_count,
+                              asleep ? SK_ASLEEP : SK_HERE);
     world->plan_stale = world->slots_stale = true;
 }
 
@@ -66,7 +67,8 @@ void sk_world_rouse_at(skein_world *world, size_t first, size_t count) {
     bool any = false;
     world->sleepers_known = false;
     for (size_t i = 0; i < world->objects.count && !any; i++)
-        any = sk_world_body_at(world, i) && (sk_world_body_at(world, i)->rest.asleep || sk_world_body_at(world, i)->rest.from);
+        any = sk_world_body_at(world, i) &&
+              (sk_world_body_at(world, i)->rest.asleep || sk_world_body_at(world, i)->rest.from);
     if (!any) return; // nobody sleeps, or is about to
     for (size_t i = 0; i < world->objects.count; i++) {
         sk_body *body = sk_world_body_at(world, i);
@@ -98,7 +100,8 @@ static void wake_islands(const sk_neighbours *r, double dt) {
     }
     sk_neighbours_mark(r);
     for (size_t i = 0; i < r->leans.count; i++)
-        if (sk_is_disturbed(r, r->by_index[r->leans.data[i].other])) wake(world, r->by_index[r->leans.data[i].pinned]->body);
+        if (sk_is_disturbed(r, r->by_index[r->leans.data[i].other]))
+            wake(world, r->by_index[r->leans.data[i].pinned]->body);
     for (size_t n = 0; n < r->count; n++)
         if (sk_is_disturbed(r, &r->of[n])) wake(world, r->of[n].body);
 }
@@ -151,10 +154,12 @@ static bool watch(skein_world *world, sk_sleeper *s, double dt) {
         forget_places(world, body);
         return true;
     }
-    if (!body->rest.from && !(body->rest.from = sk_allocate(&world->allocator, body->particle_count * sizeof *body->rest.from)))
+    if (!body->rest.from &&
+        !(body->rest.from = sk_allocate(&world->allocator, body->particle_count * sizeof *body->rest.from)))
         return false;
     for (size_t i = 0; i < body->particle_count && still; i++) {
-        const sk_vec3 off = sk_sub(sk_xyz(all->vector[SK_X][all->slot_of[body->first_particle + i]]), body->rest.from[i]);
+        const sk_vec3 off =
+            sk_sub(sk_xyz(all->vector[SK_X][all->slot_of[body->first_particle + i]]), body->rest.from[i]);
         still = sk_dot(off, off) <= far * far;
     }
     body->rest.still = still ? body->rest.still + dt : 0;
@@ -179,7 +184,8 @@ static void let_sleep(const sk_neighbours *r, double dt) {
     for (size_t n = 0; n < r->count; n++) {
         sk_sleeper *s = &r->of[n];
         sk_body *body = s->body;
-        if (!body->rest.asleep && s->ready && s->common->sleep > 0 && (s->led || sk_is_driven(world, s) || sk_is_met(world, s, dt))) {
+        if (!body->rest.asleep && s->ready && s->common->sleep > 0 &&
+            (s->led || sk_is_driven(world, s) || sk_is_met(world, s, dt))) {
             s->ready = false;
             forget_places(world, body); // it may lose its hold when that ends
         }
@@ -187,17 +193,20 @@ static void let_sleep(const sk_neighbours *r, double dt) {
     }
     sk_neighbours_mark(r);
     for (size_t i = 0; i < r->leans.count; i++)
-        if (sk_is_disturbed(r, r->by_index[r->leans.data[i].other])) r->by_index[r->leans.data[i].pinned]->ready = false;
+        if (sk_is_disturbed(r, r->by_index[r->leans.data[i].other]))
+            r->by_index[r->leans.data[i].pinned]->ready = false;
     for (size_t n = 0; n < r->count; n++) {
         const sk_sleeper *s = &r->of[n];
-        if (s->ready && s->common->sleep > 0 && !s->body->rest.asleep && !sk_is_disturbed(r, s)) fall_asleep(world, s->body);
+        if (s->ready && s->common->sleep > 0 && !s->body->rest.asleep && !sk_is_disturbed(r, s))
+            fall_asleep(world, s->body);
     }
 }
 
 skein_status sk_world_let_sleep(skein_world *world, double dt, skein_error *error) {
     bool any = false, ready = false, good = true;
     for (size_t i = 0; i < world->objects.count; i++)
-        any |= sk_world_body_at(world, i) && (world->objects.data[i]->common.plain.sleep > 0 || sk_world_body_at(world, i)->rest.from);
+        any |= sk_world_body_at(world, i) &&
+               (world->objects.data[i]->common.plain.sleep > 0 || sk_world_body_at(world, i)->rest.from);
     if (!any || is_sleepless(world)) return SKEIN_OK;
     sk_neighbours r;
     if (!sk_neighbours_find(world, 0, dt, &r)) return sk_fail_memory(error, "bodies that sleep");

@@ -19,9 +19,9 @@
  * built otherwise refuses the snapshot. A reader looks through all of it before it changes anything, and allocates
  * nothing by what it says. Everything else that a world has is made from these (the plan, slots, sweeps, contact's
  * pairs): no bit of a step depends on how long it has been there. */
-#include "world/record.h"
 #include "colliders/trimesh.h"
 #include "world/cut.h"
+#include "world/record.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -218,9 +218,11 @@ static void put_rests(sk_byte_writer *w, const skein_world *world) {
         sk_put_u8(w, rest);
         sk_put_f64(w, body->rest.still);
         sk_put_u64(w, body->rest.near);
-        for (int k = 0; k < 3 && body->rest.roused; k++) sk_put_real(w, body->rest.low[k]), sk_put_real(w, body->rest.high[k]);
+        for (int k = 0; k < 3 && body->rest.roused; k++)
+            sk_put_real(w, body->rest.low[k]), sk_put_real(w, body->rest.high[k]);
         for (size_t k = 0; k < body->particle_count && body->rest.from; k++)
-            sk_put_real(w, body->rest.from[k].x), sk_put_real(w, body->rest.from[k].y), sk_put_real(w, body->rest.from[k].z);
+            sk_put_real(w, body->rest.from[k].x), sk_put_real(w, body->rest.from[k].y),
+                sk_put_real(w, body->rest.from[k].z);
     }
 }
 
@@ -296,7 +298,8 @@ static unsigned presence_of(const skein_world *world, size_t particle) {
 }
 
 static void put_all(sk_byte_writer *w, const skein_world *world) {
-    const bool any_eased = count_eased(world) > 0, any_led = any_eased || count_led(world) > 0, any_rests = any_led || count_resting(world) > 0;
+    const bool any_eased = count_eased(world) > 0, any_led = any_eased || count_led(world) > 0,
+               any_rests = any_led || count_resting(world) > 0;
     const bool any_cut = any_rests || count_cut(world) > 0;
     sk_put(w, magic, sizeof magic);
     const bool asks = any_asks(world);
@@ -636,7 +639,8 @@ static skein_status take_rests(sk_byte_reader *r, skein_world *world, uint32_t v
         if (world->objects.data[i]->category == SKEIN_BODY) sk_body_forget_rest(world, world->objects.data[i]->as.body);
     for (uint32_t i = 0; i < count && !r->short_; i++) {
         const uint32_t index = sk_take_u32(r);
-        if (r->short_ || index < next || index >= world->objects.count || world->objects.data[index]->category != SKEIN_BODY)
+        if (r->short_ || index < next || index >= world->objects.count ||
+            world->objects.data[index]->category != SKEIN_BODY)
             return fail_short(error);
         skein_status status = take_rest(r, world, world->objects.data[index]->as.body, apply, error);
         if (status) return status;
@@ -647,7 +651,8 @@ static skein_status take_rests(sk_byte_reader *r, skein_world *world, uint32_t v
 
 static skein_status take_surface(sk_byte_reader *r, skein_world *world, sk_trimesh *m, bool apply, skein_error *error) {
     const uint64_t count = sk_take_u64(r), led = sk_take_u64(r);
-    if (r->short_ || count != m->vertex_count || (led && led != m->given_count) || sk_left(r) / (3 * sizeof(real)) < count)
+    if (r->short_ || count != m->vertex_count || (led && led != m->given_count) ||
+        sk_left(r) / (3 * sizeof(real)) < count)
         return fail_short(error);
     if (apply && !m->led) world->plan_stale = true;
     if (apply && !sk_trimesh_provide(m)) return sk_fail_memory(error, "the vertices of a collider");
@@ -668,7 +673,8 @@ static skein_status take_surface(sk_byte_reader *r, skein_world *world, sk_trime
 }
 
 /* What nobody led there is as it was made. */
-static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply,
+                                  skein_error *error) {
     const uint32_t count = version > 3 ? sk_take_u32(r) : 0;
     uint32_t next = 0;
     for (uint32_t i = 0; i <= count && !r->short_; i++) {
@@ -690,10 +696,12 @@ static skein_status take_surfaces(sk_byte_reader *r, skein_world *world, uint32_
 }
 
 /* What was raised by the fields that have been read is so at once, unless the snapshot says otherwise. */
-static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply, skein_error *error) {
+static skein_status take_easings(sk_byte_reader *r, skein_world *world, uint32_t version, bool apply,
+                                 skein_error *error) {
     const uint32_t count = version > 4 ? sk_take_u32(r) : 0;
     uint32_t next = 0;
-    for (size_t i = 0; i < world->rules.forces.count && apply; i++) world->rules.forces.data[i]->easing = (sk_easing){.less = 0};
+    for (size_t i = 0; i < world->rules.forces.count && apply; i++)
+        world->rules.forces.data[i]->easing = (sk_easing){.less = 0};
     for (uint32_t i = 0; i < count && !r->short_; i++) {
         const uint32_t index = sk_take_u32(r);
         const double less = sk_take_f64(r), since = sk_take_f64(r);

@@ -107,8 +107,8 @@ skein_status skein_world_stability(skein_world *world, skein_stability *stabilit
     if (!status) status = sk_world_fetch(world);
     if (status) return status;
     for (size_t i = 0; i < world->rules.batches.count; i++) sk_batch_refresh(world->rules.batches.data[i]);
-    uint32_t wanted = 1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << sums | 1u << SK_FILTER0 |
-                      1u << SK_FILTER1;
+    uint32_t wanted =
+        1u << mode_at | 1u << image | 1u << zero | 1u << resistance | 1u << sums | 1u << SK_FILTER0 | 1u << SK_FILTER1;
     world->plan_stale = true; // its temporaries go
     if (!sk_particles_want(&world->particles, &world->allocator, wanted)) return sk_fail_memory(error, "stability");
     finder f = {.world = world, .run = sk_world_run_context(world)};

@@ -35,7 +35,8 @@ static size_t count_guarded(const skein_world *world, const sk_force *force) {
     for (size_t i = 0; i < all->count && *force->enabled && force->type->guarded; i++) {
         sk_vec4 x = all->vector[SK_X][all->slot_of[i]], v = all->vector[SK_V][all->slot_of[i]];
         const double p[3] = {(double)x.x, (double)x.y, (double)x.z}, u[3] = {(double)v.x, (double)v.y, (double)v.z};
-        if (x.w > 0 && sk_particle_is_here(all, i) && sk_only_has(&force->only, i)) guarded += force->type->guarded(force->params, p, u, world->time);
+        if (x.w > 0 && sk_particle_is_here(all, i) && sk_only_has(&force->only, i))
+            guarded += force->type->guarded(force->params, p, u, world->time);
     }
     return guarded;
 }
@@ -78,7 +79,8 @@ static real put_kth(real *x, size_t count, size_t k) {
 
 /* Those of a body that is not there do not count. */
 static bool is_there(const skein_world *world, const sk_batch *batch) {
-    return batch->count && !batch->only_bounds && !batch->rests && !batch->broken && sk_particle_counts(&world->particles, batch->particle[0]);
+    return batch->count && !batch->only_bounds && !batch->rests && !batch->broken &&
+           sk_particle_counts(&world->particles, batch->particle[0]);
 }
 
 /* A limit is kept to a tenth of itself, and to rounding. */
@@ -149,7 +151,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
     statistics->particles = all->count - all->out_count + all->asleep_count;
     statistics->asleep = all->asleep_count;
     status = sk_world_arrange(world, error); // the slots of new rules may not be known yet
-    skein_error ignored; // a name that no body has is a step's to tell
+    skein_error ignored;                     // a name that no body has is a step's to tell
     if (!status) sk_world_find_whom(world, &ignored);
     if (status) return status;
     count_particles(world, statistics);
@@ -163,8 +165,8 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         for (size_t at = 0, first, end; sk_world_next_run(world, collider->common->on, &at, &first, &end);) {
             sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first,
                                 &statistics->max_penetration, &statistics->contacts);
-            statistics->guarded += sk_collider_count_guarded(collider, world->time, all->vector[SK_X],
-                                                             all->slot_of + first, end - first);
+            statistics->guarded +=
+                sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first);
         }
     }
     for (size_t i = 0; i < world->rules.forces.count; i++)

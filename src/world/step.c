@@ -19,7 +19,8 @@ skein_status sk_world_arrange(skein_world *world, skein_error *error) {
     for (size_t i = 0; i < world->rules.batches.count && good; i++)
         good = sk_batch_arrange(world->rules.batches.data[i], allocator, &world->particles);
     for (size_t i = 0; i < world->rules.limits.count && good; i++)
-        if (*world->rules.limits.data[i]->enabled) good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
+        if (*world->rules.limits.data[i]->enabled)
+            good = sk_limit_arrange(world->rules.limits.data[i], allocator, &world->particles);
     if (!good) return sk_fail_memory(error, "the order of sweeps");
     if (!sk_surface_arrange(&world->surface, allocator, &world->particles, &world->triangles))
         return sk_fail_memory(error, "triangles");
@@ -38,7 +39,8 @@ static void warn_of_light_colliders(skein_world *world) {
         double mass = sk_collider_mass(collider), heaviest = 0;
         if (!(mass > 0) || mass == collider->warned_mass) continue;
         for (size_t p = 0; p < all->count; p++)
-            if (!all->pinned[p] && sk_particle_is_here(all, p) && (double)all->mass[p] > heaviest) heaviest = (double)all->mass[p];
+            if (!all->pinned[p] && sk_particle_is_here(all, p) && (double)all->mass[p] > heaviest)
+                heaviest = (double)all->mass[p];
         if (!(mass < heaviest)) continue;
         sk_world_log(world, SKEIN_LOG_WARNING,
                      "%s: its mass of %g kg is less than that of a particle, %g kg: such particles stop at it",
@@ -160,7 +162,8 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
     if (!status) status = sk_world_find_pins(world, error);
     if (status) return status;
     int most = world->method->substeps(world->method_params);
-    if (world->method->shortens_slowly && !sk_world_find_finer(world, dt, most, &most)) return sk_fail_memory(error, "places for pins");
+    if (world->method->shortens_slowly && !sk_world_find_finer(world, dt, most, &most))
+        return sk_fail_memory(error, "places for pins");
     const int substeps = substeps_of(world, dt, most);
     if (!world->plan_stale && world->plan_dt == dt && world->plan_substeps == substeps) return SKEIN_OK;
     const sk_method_type *method = world->method;
@@ -340,8 +343,7 @@ skein_status skein_world_profile(skein_world *world, double dt, skein_pass *out,
     memset(seconds, 0, world->plan.count * sizeof *seconds);
     status = take_step(world, dt, seconds, error);
     for (size_t r = 0; r < world->plan.count && !status; r++)
-        if (world->plan.data[r].kernel)
-            add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
+        if (world->plan.data[r].kernel) add_to_passes(&world->plan.data[r], seconds[r], out, most, count);
     sk_release(&world->allocator, seconds);
     return status;
 }

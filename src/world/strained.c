@@ -16,7 +16,8 @@ static const double least_stiff = 30;
 static double stiffness_in_substep(const sk_batch *batch, const sk_vec4 *x, size_t e, double h) {
     const uint32_t *slot = batch->slot + e * batch->arity;
     const double scale = batch->scale ? (double)batch->scale[e] : 1;
-    return ((const sk_material *)batch->params)->stiffness * scale * h * h * ((double)x[slot[0]].w + (double)x[slot[1]].w);
+    return ((const sk_material *)batch->params)->stiffness * scale * h * h *
+           ((double)x[slot[0]].w + (double)x[slot[1]].w);
 }
 
 /* Whether any is beyond half its bound; where nobody has set that, of those that are stiff. Sweeps leave alone what is within, so that who

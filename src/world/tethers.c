@@ -43,7 +43,8 @@ void sk_world_remove_tethers(skein_world *world, const sk_body *body, bool late_
     size_t kept = 0;
     for (size_t i = 0; i < rules->limits.count; i++) {
         sk_limit *limit = rules->limits.data[i];
-        if (limit->bound == &body->tether_bound && (limit->late || !late_alone)) sk_limit_release(limit, &world->allocator);
+        if (limit->bound == &body->tether_bound && (limit->late || !late_alone))
+            sk_limit_release(limit, &world->allocator);
         else rules->limits.data[kept++] = limit;
     }
     rules->limits.count = kept;
@@ -66,7 +67,8 @@ static bool arrange_late(skein_world *world, sk_body *body, size_t first) {
     }
     if (body->cut) good = sk_cut_tethers(world, body);
     for (size_t i = first; i < rules->limits.count && good && !world->slots_stale; i++)
-        if (*rules->limits.data[i]->enabled) good = sk_limit_arrange(rules->limits.data[i], &world->allocator, &world->particles);
+        if (*rules->limits.data[i]->enabled)
+            good = sk_limit_arrange(rules->limits.data[i], &world->allocator, &world->particles);
     return good;
 }
 

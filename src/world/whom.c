@@ -84,7 +84,8 @@ static size_t triangles_before(const skein_world *world, const sk_body *body) {
     size_t count = body->first_triangle;
     for (size_t i = 0; i < world->objects.count; i++) {
         const sk_body *other = body_at(world, i) ? body_at(world, i)->as.body : NULL;
-        if (other && (!other->enabled || other->rest.asleep) && other->first_triangle < body->first_triangle) count -= other->triangle_count;
+        if (other && (!other->enabled || other->rest.asleep) && other->first_triangle < body->first_triangle)
+            count -= other->triangle_count;
     }
     return count;
 }
@@ -114,7 +115,8 @@ bool sk_world_list_sleepers(skein_world *world, const char *names, sk_only *only
     for (const sk_body *body; only->some && (body = sk_world_next_named(world, names, &cursor));) {
         if (!body->rest.asleep && !sk_world_stands(world, body)) continue;
         if (!SK_RESERVE(&world->allocator, only, only->count + 1)) return false;
-        only->data[only->count++] = (sk_span_of_body){body->first_particle, body->first_particle + body->particle_count, 0, 0, 0, 0};
+        only->data[only->count++] =
+            (sk_span_of_body){body->first_particle, body->first_particle + body->particle_count, 0, 0, 0, 0};
     }
     return true;
 }
@@ -184,7 +186,8 @@ static skein_status check_disabled(const skein_world *world, skein_error *error)
     skein_status status = SKEIN_OK;
     for (size_t i = 0; i < world->rules.colliders.count && !status; i++) {
         const sk_collider *collider = world->rules.colliders.data[i];
-        if (!collider->common->enabled) status = sk_world_check_names(world, collider->label, collider->common->on, error);
+        if (!collider->common->enabled)
+            status = sk_world_check_names(world, collider->label, collider->common->on, error);
     }
     for (size_t i = 0; i < world->rules.forces.count && !status; i++) {
         const sk_force *force = world->rules.forces.data[i];
@@ -212,8 +215,7 @@ skein_status sk_world_find_whom(skein_world *world, skein_error *error) {
         if (particle >= 0 && (size_t)particle < world->particles.count &&
             !sk_particle_is_here(&world->particles, (size_t)particle))
             force->moved = (sk_group){0, 0, 0, 0, 0};
-        if (!status && force->type->check)
-            status = force->type->check(force->params, world->particles.count, error);
+        if (!status && force->type->check) status = force->type->check(force->params, world->particles.count, error);
     }
     return status;
 }

@@ -1,8 +1,8 @@
 /* The world's life: made, filled by builders, destroyed. */
+#include "world/world.h"
 #include "plan/share_part.h"
 #include "world/cut.h"
 #include "world/record.h"
-#include "world/world.h"
 
 #include <stdarg.h>
 #include <stdio.h>
@@ -278,8 +278,7 @@ void sk_world_rank_particles(skein_world *world, const sk_body *body, const uint
     world->plan_stale = world->slots_stale = true;
 }
 
-skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3],
-                                    skein_error *error) {
+skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error) {
     sk_triangles *all = &world->triangles;
     size_t need = all->count + count;
     if (!sk_reserve(&world->allocator, (void **)&all->corner, &all->capacity, need, sizeof *all->corner))

@@ -36,8 +36,8 @@ typedef struct sk_body_type {
     void (*change)(sk_body *body, const void *params);
     /* Adds tethers to some of its particles, pins[i] of each, once it is built (world/tethers.c); NULL: it has none. */
     skein_status (*tether)(skein_world *world, sk_body *body, const void *params, const bool *pins, skein_error *error);
-    skein_shape_sort shape; /* what it looks like: its faces, if nothing is said */
-    const sk_making *making; /* what is made from its parameters; NULL: nothing */
+    skein_shape_sort shape;    /* what it looks like: its faces, if nothing is said */
+    const sk_making *making;   /* what is made from its parameters; NULL: nothing */
     const sk_presets *presets; /* a choice that stands for other fields; NULL: none does */
     bool is_sheet; /* its faces, as fans one after the other, are its triangles, and all that it is: it can be cut */
 } sk_body_type;
@@ -61,15 +61,16 @@ struct sk_body {
     size_t vertex_count, face_count, face_vertex_count;
     size_t first_triangle, triangle_count; /* of the world's */
     uint32_t grid_rows, grid_columns;      /* 0: not a grid */
-    float *corner_uv;                 /* face_vertex_count x 2, or NULL: kept for whoever draws */
+    float *corner_uv;                      /* face_vertex_count x 2, or NULL: kept for whoever draws */
     sk_batch *batch[SK_MOST_BODY_BATCHES];
     sk_material *material[SK_MOST_BODY_BATCHES]; /* of the batch beside it */
     size_t batch_count;
     double tether_bound, strain_bound; /* of its limits */
     double tear_bound;                 /* the stretch at which its edges give way; 0: never */
-    bool *built_pins, *late_pins; /* of each particle: whether it was pinned as the body was built, and whether there are tethers to
+    bool *built_pins,
+        *late_pins; /* of each particle: whether it was pinned as the body was built, and whether there are tethers to
                                    * it because it was so later; NULL: none */
-    sk_cut *cut;                       /* NULL: it never was (world/cut.h) */
+    sk_cut *cut;    /* NULL: it never was (world/cut.h) */
     bool enabled;
     sk_rest rest;
     const char *label; /* its name, else its kind's */
@@ -158,7 +159,7 @@ struct skein_world {
     sk_tasks *tasks;
     sk_pace pace; /* how many of the threads a step takes */
     sk_particles particles;
-    bool supported; /* their SUPPORT is not all 0 */
+    bool supported;         /* their SUPPORT is not all 0 */
     sk_triangles triangles; /* as user's indices */
     sk_surface surface;     /* the same as slots */
     sk_rules rules;
@@ -178,17 +179,17 @@ struct skein_world {
     void *method_params;
     sk_plan plan;
     sk_op *live; /* room for those of its ops that a step needs (step.c), where some are not always needed; else NULL */
-    double plan_dt;   /* the step that the plan was written for, */
-    int plan_substeps; /* and how many substeps it has */
-    float substep;    /* s, of the last step, if its method shortens slowly; else 0 */
-    bool sweeps_more; /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
-    bool plan_stale;  /* rules, settings or the method have changed */
-    bool unfused;     /* the plan stays as the method writes it (plan/fuse.h) */
-    bool slots_stale; /* particles, batches or limits were added: slots and sweeps are to be found anew */
-    bool pins_stale;  /* somebody was pinned, or let go */
+    double plan_dt;       /* the step that the plan was written for, */
+    int plan_substeps;    /* and how many substeps it has */
+    float substep;        /* s, of the last step, if its method shortens slowly; else 0 */
+    bool sweeps_more;     /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
+    bool plan_stale;      /* rules, settings or the method have changed */
+    bool unfused;         /* the plan stays as the method writes it (plan/fuse.h) */
+    bool slots_stale;     /* particles, batches or limits were added: slots and sweeps are to be found anew */
+    bool pins_stale;      /* somebody was pinned, or let go */
     uint64_t arrangement; /* how often slots were found */
-    bool roused;         /* rules have changed since the last step: all that sleeps is to wake */
-    bool sleepers_known; /* among those that sleep so many edges go through triangles: */
+    bool roused;          /* rules have changed since the last step: all that sleeps is to wake */
+    bool sleepers_known;  /* among those that sleep so many edges go through triangles: */
     size_t crossings_asleep;
     bool presence_stale; /* bodies were taken out or back: constraints on their particles are to be looked through */
     sk_isa isa;
@@ -218,16 +219,16 @@ struct skein_world {
     uint64_t steps, substeps;
     uint64_t unsolved, solver_failures; /* of all steps, where a method solves */
     uint64_t contact_overflows;         /* and how often contact gave up */
-    double first_energy;        /* J, when the first step began */
-    sk_solve solve;             /* of the last step */
-    sk_matrix matrix;           /* where a plan factors one, and the solver */
-    sk_device *device;          /* NULL: the processor */
+    double first_energy;                /* J, when the first step began */
+    sk_solve solve;                     /* of the last step */
+    sk_matrix matrix;                   /* where a plan factors one, and the solver */
+    sk_device *device;                  /* NULL: the processor */
     struct {
         const skein_compiled **data;
         size_t count, capacity;
-    } compiled; /* what was registered; the newest is asked first */
+    } compiled;                     /* what was registered; the newest is asked first */
     struct sk_recording *recording; /* NULL: nobody records */
-    sk_share *share;            /* NULL: this is the whole run */
+    sk_share *share;                /* NULL: this is the whole run */
 };
 
 /* The body that an object at a place of the list is; NULL: another. */
@@ -246,8 +247,7 @@ skein_status sk_world_find_arity(skein_world *world, const sk_constraint_type *t
 skein_status sk_world_add_force(skein_world *world, const sk_force_type *type, const skein_setting *settings,
                                 skein_handle *handle);
 skein_status sk_world_add_collider(skein_world *world, const sk_collider_type *type, const skein_mesh *mesh,
-                                   const skein_setting *settings,
-                                   skein_handle *handle);
+                                   const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_add_motion(skein_world *world, const sk_motion_type *type, const skein_track *track,
                                  const skein_setting *settings, skein_handle *handle);
 skein_status sk_world_set_method(skein_world *world, const sk_method_type *type, const skein_setting *settings);
@@ -266,8 +266,7 @@ skein_status sk_world_add_particles(skein_world *world, size_t count, const doub
 /* A batch of a body. `measured` ones count in the stretch statistics. Empty batches are allowed. */
 skein_status sk_world_add_body_batch(skein_world *world, sk_body *body, const sk_constraint_type *type,
                                      const char *label, sk_material material, bool measured, size_t count,
-                                     const uint32_t *particles, const real *rest, const real *scale,
-                                     skein_error *error);
+                                     const uint32_t *particles, const real *rest, const real *scale, skein_error *error);
 skein_status sk_world_add_tethers(skein_world *world, sk_body *body, sk_limit_order order, size_t count, size_t anchors,
                                   const uint32_t *particles, const real *lengths, skein_error *error);
 /* Says that the body's `count` particles are a grid of rows x columns: particle i has place place[i] (row x columns
@@ -295,8 +294,7 @@ void sk_world_add_strain_limit(sk_body *body);
 /* These edges are a sheet's, which its tethers keep firm: see sk_batch.tether. */
 void sk_world_keep_firm(sk_body *body);
 skein_status sk_world_add_triangles(skein_world *world, size_t count, const uint32_t (*corners)[3], skein_error *error);
-void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...)
-    SK_PRINTF(3, 4);
+void sk_world_log(skein_world *world, skein_log_level level, const char *format, ...) SK_PRINTF(3, 4);
 
 /* ---- between the world's own files ---- */
 

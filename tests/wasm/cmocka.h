@@ -54,15 +54,14 @@ static inline int wasm_run_tests(const struct CMUnitTest *tests, size_t count, C
 
 #define cmocka_run_group_tests(tests_, setup_, teardown_) \
     wasm_run_tests(tests_, sizeof(tests_) / sizeof *(tests_), setup_, teardown_)
-#define cmocka_run_group_tests_name(name_, tests_, setup_, teardown_) \
-    cmocka_run_group_tests(tests_, setup_, teardown_)
+#define cmocka_run_group_tests_name(name_, tests_, setup_, teardown_) cmocka_run_group_tests(tests_, setup_, teardown_)
 
 #define print_message printf
 #define print_error printf
-#define skip()                        \
-    do {                              \
+#define skip()                    \
+    do {                          \
         printf("[  SKIPPED ]\n"); \
-        return;                       \
+        return;                   \
     } while (0)
 #define fail() wasm_fail("fail()", __FILE__, __LINE__)
 #define fail_msg(...) (printf(__VA_ARGS__), wasm_fail("", __FILE__, __LINE__))
@@ -88,7 +87,7 @@ static inline void wasm_equal(unsigned long long a, unsigned long long b, int eq
     wasm_equal((unsigned long long)(a_), (unsigned long long)(b_), equal_, #a_ ", " #b_, __FILE__, __LINE__)
 #define assert_int_equal(a_, b_) WASM_EQUAL(a_, b_, 1)
 #define assert_int_not_equal(a_, b_) WASM_EQUAL(a_, b_, 0)
-#define assert_in_range(a_, least_, most_)                                                          \
+#define assert_in_range(a_, least_, most_)                                  \
     assert_true((unsigned long long)(a_) >= (unsigned long long)(least_) && \
                 (unsigned long long)(a_) <= (unsigned long long)(most_))
 #define assert_float_equal(a_, b_, off_) assert_true((a_) - (b_) <= (off_) && (b_) - (a_) <= (off_))

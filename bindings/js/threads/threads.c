@@ -12,8 +12,8 @@
 #include <stdatomic.h>
 #include <stdlib.h>
 
-enum { MOST_SEATS = 63 };                              /* the pool's 64 less the caller */
-enum { ABSENT, FREE, WORKING, DONE };                  /* of a seat */
+enum { MOST_SEATS = 63 };                               /* the pool's 64 less the caller */
+enum { ABSENT, FREE, WORKING, DONE };                   /* of a seat */
 static const int64_t FOREVER = -1, A_WHILE = 20 * 1000; /* ns */
 
 typedef struct seat {
@@ -148,10 +148,10 @@ void *__wrap_realloc(void *memory, size_t size);
 void *__wrap_aligned_alloc(size_t alignment, size_t size);
 void __wrap_free(void *memory);
 
-#define LOCKED(type_, call_)      \
-    pthread_mutex_lock(&heap);    \
-    type_ memory_ = (call_);      \
-    pthread_mutex_unlock(&heap);  \
+#define LOCKED(type_, call_)     \
+    pthread_mutex_lock(&heap);   \
+    type_ memory_ = (call_);     \
+    pthread_mutex_unlock(&heap); \
     return memory_
 
 void *__wrap_malloc(size_t size) {

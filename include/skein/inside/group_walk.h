@@ -148,8 +148,8 @@ SK_INLINE void settle(group_part *p) {
  * down, while it waits for its root and its division. (A processor looks some hundred operations ahead, which is less than a
  * part has. A frame of a mesh of 20,164 vertices took 3.1 ms one by one, 2.34 two groups side by side, and takes 2.13 so; with
  * AVX2 2.9, 2.53 and 2.43.) */
-SK_INLINE void flow(const skein_groups *g, const sk_element_constants *c, size_t first, size_t end, sk_element_mode mode,
-                    void *data) {
+SK_INLINE void flow(const skein_groups *g, const sk_element_constants *c, size_t first, size_t end,
+                    sk_element_mode mode, void *data) {
     const size_t last = end * SK_LANES - SK_PART;
     group_part now, next;
     take_part(&now, g, first, 0, 0, mode);

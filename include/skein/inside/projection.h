@@ -25,7 +25,7 @@
 #define SK_UNROLLED _Pragma("GCC unroll 8")
 #endif
 #define SK_EACH_PARTICLE_OF(e, i) SK_UNROLLED for (int i = 0; i < SK_ARITY_OF(e); i++)
-#define SK_EACH_PARTICLE(i) SK_EACH_PARTICLE_OF(NULL, i) /* where their number is known */
+#define SK_EACH_PARTICLE(i) SK_EACH_PARTICLE_OF (NULL, i) /* where their number is known */
 
 typedef enum sk_element_mode {
     SK_MODE_FORCE,
@@ -54,15 +54,15 @@ typedef struct sk_element {
     sk_wide w[SK_ARITY];      /* inverse masses */
     sk_wide3 other[SK_ARITY]; /* velocities; of damped projection the positions at the substep's start; a direction */
     sk_wide rest[SK_RESTS + !SK_RESTS], stiffness, multiplier;
-    sk_wide soft; /* 1/(k h^2) */
+    sk_wide soft;                    /* 1/(k h^2) */
     sk_wide value, divisor, by_time; /* of C, or of an energy E */
-    sk_wide3 gradient[SK_ARITY];      /* G */
-    bool divided, opposite;           /* there is a divisor, and G / divisor has length 1; G of the second is minus the
+    sk_wide3 gradient[SK_ARITY];     /* G */
+    bool divided, opposite;          /* there is a divisor, and G / divisor has length 1; G of the second is minus the
                                          first's. Constants, once all is inlined. */
     bool judged, timed, is_energy, one_sided; /* texts' alone, else false: there is `active`; there is `by_time` */
     int arity;                                /* of a text, which need not read every particle */
     bool reads[SK_ARITY];
-    sk_mask active;                           /* finite, and not on the free side */
+    sk_mask active;                   /* finite, and not on the free side */
     sk_wide scale[SK_ARITY];          /* what comes out, a force or a move, is scale G */
     sk_wide velocity_scale[SK_ARITY]; /* likewise of velocity, from a limit that moves */
     sk_mask over;                     /* a limit: the lanes that are over it, which alone move */
@@ -71,11 +71,11 @@ typedef struct sk_element {
 
 /* What is the same for all elements of a row. */
 typedef struct sk_element_constants {
-    real damping_time; /* c/k, s */
-    real per_step;     /* 1/h^2, times the projections that share the stiffness */
-    real gamma;        /* c/(k h) */
-    real step;         /* h, s */
-    real bound;        /* of the relative violation */
+    real damping_time;  /* c/k, s */
+    real per_step;      /* 1/h^2, times the projections that share the stiffness */
+    real gamma;         /* c/(k h) */
+    real step;          /* h, s */
+    real bound;         /* of the relative violation */
     real elastic, both; /* of an implicit solve: the stiffness counts so many times, alone and with its damping */
 } sk_element_constants;
 
@@ -122,8 +122,7 @@ SK_INLINE void judge(sk_element *e, bool weighed) {
         e->value = sk_keep(e->active, e->value), e->by_time = sk_keep(e->active, e->by_time);
         SK_EACH_PARTICLE_OF (e, i) {
             sk_wide3 g = e->gradient[i];
-            e->gradient[i] =
-                (sk_wide3){sk_keep(e->active, g.x), sk_keep(e->active, g.y), sk_keep(e->active, g.z)};
+            e->gradient[i] = (sk_wide3){sk_keep(e->active, g.x), sk_keep(e->active, g.y), sk_keep(e->active, g.z)};
         }
     }
     if (e->one_sided) e->active &= sk_negative(e->value);

@@ -246,8 +246,7 @@ SK_INLINE sk_wide4 sk_transpose(sk_wide q0, sk_wide q1, sk_wide q2, sk_wide q3) 
     sk_wide xy01 = __builtin_shufflevector(q0, q1, LOW_LANES), zw01 = __builtin_shufflevector(q0, q1, HIGH_LANES);
     sk_wide xy23 = __builtin_shufflevector(q2, q3, LOW_LANES), zw23 = __builtin_shufflevector(q2, q3, HIGH_LANES);
     return (sk_wide4){__builtin_shufflevector(xy01, xy23, FIRST_PAIRS), __builtin_shufflevector(xy01, xy23, LAST_PAIRS),
-                      __builtin_shufflevector(zw01, zw23, FIRST_PAIRS),
-                      __builtin_shufflevector(zw01, zw23, LAST_PAIRS)};
+                      __builtin_shufflevector(zw01, zw23, FIRST_PAIRS), __builtin_shufflevector(zw01, zw23, LAST_PAIRS)};
 #undef LOW_LANES
 #undef HIGH_LANES
 #undef FIRST_PAIRS

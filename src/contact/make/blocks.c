@@ -21,7 +21,8 @@ static bool list_in(const making *m, const rectangle *r, size_t count, real wide
     }
     for (; first < count && m->order[first].low <= r->high.u + margin; first++) {
         const rectangle *other = &m->of_panel[m->order[first].panel];
-        if (other->high.u < r->low.u - margin || other->high.v < r->low.v - margin || other->low.v > r->high.v + margin) continue;
+        if (other->high.u < r->low.u - margin || other->high.v < r->low.v - margin || other->low.v > r->high.v + margin)
+            continue;
         if (!SK_RESERVE(m->allocator, list, list->count + 1)) return false;
         list->data[list->count++] = m->order[first].panel;
     }
@@ -106,7 +107,9 @@ static bool is_whole(making *m, const uint32_t *member, size_t members, const ui
         for (uint32_t k = spread->leaves.start[around[i]]; k < spread->leaves.start[around[i] + 1]; k++) {
             const sk_leaf *leaf = &skin->leaf[spread->leaves.number[k]];
             for (uint32_t e = leaf->first_edge; e < leaf->first_edge + leaf->edges; e++)
-                if (m->border[e] && is_inside(m->hull, hull, m->spot[skin->edge[e][0]], m->spot[skin->edge[e][1]], margin)) return false;
+                if (m->border[e] &&
+                    is_inside(m->hull, hull, m->spot[skin->edge[e][0]], m->spot[skin->edge[e][1]], margin))
+                    return false;
         }
     return true;
 }
@@ -183,7 +186,8 @@ static bool add_bins(making *m, const by_bin *sheet, size_t u, size_t v, size_t 
     for (; v < end_v && v < sheet->along; v++)
         for (size_t i = u; i < end_u && i < sheet->across; i++) {
             const size_t at = v * sheet->across + i;
-            for (uint32_t k = sheet->start[at]; k < sheet->start[at + 1] && good; k++) good = add(m, list, sheet->panel[k]);
+            for (uint32_t k = sheet->start[at]; k < sheet->start[at + 1] && good; k++)
+                good = add(m, list, sheet->panel[k]);
         }
     return good;
 }
@@ -205,7 +209,8 @@ static bool list_block(making *m, const by_bin *sheet, size_t u, size_t v, size_
         longest = sk_max(longest, m->longest[member[i]]);
     }
     if (!list_in(m, &all, panels, widest, -margin, &m->around)) return false;
-    for (size_t i = first_around; i < m->around.count; i++) block.steep = sk_max(block.steep, m->steep[m->around.data[i]]);
+    for (size_t i = first_around; i < m->around.count; i++)
+        block.steep = sk_max(block.steep, m->steep[m->around.data[i]]);
     block.across = block.apart > 0 ? 1 + 2 * longest / block.apart : SK_REAL_MAX;
     bool no_memory = false;
     block.whole = block.apart > (real)1e-3 * longest &&
@@ -242,9 +247,11 @@ static bool list_sheet(making *m, size_t first, size_t end) {
         good = add_bins(m, &sheet, u ? u - 1 : 0, v ? v - 1 : 0, u + 2, v + 2, &m->beside);
         if (good) measure_apart(m, p, m->beside.data + before, m->beside.count - before);
     }
-    for (size_t p = first; p < end; p++) m->apart[p] = sk_sqrt(m->apart[p]) - 2 * (real)1e-3 * m->skin->longest; // (borders)
+    for (size_t p = first; p < end; p++)
+        m->apart[p] = sk_sqrt(m->apart[p]) - 2 * (real)1e-3 * m->skin->longest; // (borders)
     for (size_t v = 0; (v == 0 || v + 1 < sheet.along) && good; v++)
-        for (size_t u = 0; (u == 0 || u + 1 < sheet.across) && good; u++) good = list_block(m, &sheet, u, v, end - first, widest);
+        for (size_t u = 0; (u == 0 || u + 1 < sheet.across) && good; u++)
+            good = list_block(m, &sheet, u, v, end - first, widest);
     sk_release(m->allocator, start);
     return good;
 }
@@ -258,7 +265,8 @@ static bool invert(const sk_lists *lists, size_t count, sk_lists *of, size_t mos
     for (size_t i = 0; i < all; i++) of->start[lists->number[i] + 2]++;
     for (size_t i = 0; i < most; i++) of->start[i + 2] += of->start[i + 1];
     for (size_t i = 0; i < count; i++)
-        for (uint32_t k = lists->start[i]; k < lists->start[i + 1]; k++) of->number[of->start[lists->number[k] + 1]++] = (uint32_t)i;
+        for (uint32_t k = lists->start[i]; k < lists->start[i + 1]; k++)
+            of->number[of->start[lists->number[k] + 1]++] = (uint32_t)i;
     return true;
 }
 
@@ -273,7 +281,8 @@ bool sk_blocks_list(making *m) {
     bool good = add(m, &m->starts[0], 0) && add(m, &m->starts[1], 0);
     for (size_t p = 0, end; p < spread->count && good; p = end) {
         const uint32_t piece = piece_of_panel(m, p);
-        for (end = p; end < spread->count && piece_of_panel(m, end) == piece; end++) spread->beside.start[end] = (uint32_t)m->beside.count;
+        for (end = p; end < spread->count && piece_of_panel(m, end) == piece; end++)
+            spread->beside.start[end] = (uint32_t)m->beside.count;
         good = !m->flat[piece] || list_sheet(m, p, end);
     }
     spread->beside.start[spread->count] = (uint32_t)m->beside.count;

@@ -42,7 +42,8 @@ static bool list_rings(sk_calm *calm, const sk_skin *skin, sk_allocator *allocat
     uint8_t *crowded = sk_allocate(allocator, leaves + 1);
     bool good = last && crowded && (calm->ring_start = sk_allocate(allocator, (leaves + 2) * sizeof *calm->ring_start));
     if (good) memset(last, 0xff, leaves * sizeof *last);
-    for (size_t a = 0; a < leaves && good; a++) crowded[a] = list_around(skin, a, last, around, MOST_AROUND) > MOST_AROUND;
+    for (size_t a = 0; a < leaves && good; a++)
+        crowded[a] = list_around(skin, a, last, around, MOST_AROUND) > MOST_AROUND;
     for (int fill = 0; fill < 2 && good; fill++) {
         if (fill) good = (calm->ring = sk_allocate(allocator, (count + 1) * sizeof *calm->ring)) != NULL;
         memset(last, 0xff, leaves * sizeof *last);
@@ -198,7 +199,8 @@ static void lead_with_three(const sk_vec4 *built, uint32_t *vertex, size_t count
         if (square_apart(built, vertex[0], vertex[i]) > square_apart(built, vertex[0], vertex[far])) far = i;
     swap(vertex, 1, far);
     for (size_t i = 2; i < count; i++)
-        if (square_off(built, vertex[0], vertex[1], vertex[i]) > square_off(built, vertex[0], vertex[1], vertex[off])) off = i;
+        if (square_off(built, vertex[0], vertex[1], vertex[i]) > square_off(built, vertex[0], vertex[1], vertex[off]))
+            off = i;
     swap(vertex, 2, off);
 }
 

@@ -23,13 +23,14 @@ static void add_edges(const sk_skin *skin, const sk_meeting_parts *parts, edges 
         body = body_of(parts, skin->particle[corner[0]], body);
         if (body == parts->body_count) continue;
         for (int c = 0; c < 3; c++)
-            of[body].length += (double)sk_length(sk_sub(sk_xyz(skin->built[corner[(c + 1) % 3]]), sk_xyz(skin->built[corner[c]])));
+            of[body].length +=
+                (double)sk_length(sk_sub(sk_xyz(skin->built[corner[(c + 1) % 3]]), sk_xyz(skin->built[corner[c]])));
         of[body].count += 3;
     }
 }
 
-const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts, double usual,
-                                        double *edge, double *thickness) {
+const sk_meeting_body *sk_touch_crowded(const sk_touch *touch, sk_allocator *allocator, const sk_meeting_parts *parts,
+                                        double usual, double *edge, double *thickness) {
     const double most = 0.6; // of an edge
     edges *of = sk_allocate(allocator, (parts->body_count + 1) * sizeof *of);
     const sk_meeting_body *crowded = NULL;

@@ -19,13 +19,15 @@ skein_status sk_ignored_check(const char *text, skein_error *error) {
         if (!colon) continue;
         int length = whole.length < 60 ? (int)whole.length : 60;
         if (memchr(pair[1].at, ':', pair[1].length))
-            return sk_fail(error, SKEIN_ERROR_VALUE, "ignore", "'%.*s': expected two names, \"cape:shirt\"; between pairs is a comma", length, whole.at);
+            return sk_fail(error, SKEIN_ERROR_VALUE, "ignore",
+                           "'%.*s': expected two names, \"cape:shirt\"; between pairs is a comma", length, whole.at);
         for (int k = 0; k < 2; k++)
             if (!pair[k].length)
-                return sk_fail(error, SKEIN_ERROR_VALUE, "ignore",
-                               "'%.*s': a name is missing %s the colon: expected two, \"cape:shirt\", or one without a colon for "
-                               "what does not meet itself",
-                               length, whole.at, k ? "behind" : "before");
+                return sk_fail(
+                    error, SKEIN_ERROR_VALUE, "ignore",
+                    "'%.*s': a name is missing %s the colon: expected two, \"cape:shirt\", or one without a colon for "
+                    "what does not meet itself",
+                    length, whole.at, k ? "behind" : "before");
     }
     return SKEIN_OK;
 }
@@ -41,7 +43,9 @@ static size_t count_pairs(const char *text) {
 static size_t body_of(const sk_skin *skin, const sk_leaf *leaf, const sk_meeting_parts *parts) {
     uint32_t v = leaf->triangles ? skin->triangle[leaf->first_triangle][0] : skin->edge[leaf->first_edge][0];
     size_t body = 0;
-    while (body < parts->body_count && !(skin->particle[v] >= parts->body[body].first && skin->particle[v] < parts->body[body].end)) body++;
+    while (body < parts->body_count &&
+           !(skin->particle[v] >= parts->body[body].first && skin->particle[v] < parts->body[body].end))
+        body++;
     return body;
 }
 
@@ -65,7 +69,8 @@ static bool do_not_meet(const uint8_t *a, const uint8_t *b, size_t pairs) {
 }
 
 /* Numbers bodies: 0 are those that are no word. `words` has room for a row of `pairs` for each number, and one more. */
-static size_t number_bodies(const char *text, const sk_meeting_parts *parts, size_t pairs, uint8_t *words, uint32_t *number) {
+static size_t number_bodies(const char *text, const sk_meeting_parts *parts, size_t pairs, uint8_t *words,
+                            uint32_t *number) {
     size_t numbers = 1;
     for (size_t i = 0; i < parts->body_count; i++) {
         uint8_t *own = words + numbers * pairs;
@@ -93,7 +98,8 @@ bool sk_ignored_make(sk_ignored *ignored, sk_allocator *allocator, const sk_skin
     good = good && width <= room / width && (ignored->pair = sk_allocate(allocator, width * width)) != NULL;
     if (good) {
         number[bodies] = 0; // of leaves that are of no body
-        for (size_t i = 0; i < skin->leaf_count; i++) ignored->of_leaf[i] = number[body_of(skin, &skin->leaf[i], parts)];
+        for (size_t i = 0; i < skin->leaf_count; i++)
+            ignored->of_leaf[i] = number[body_of(skin, &skin->leaf[i], parts)];
         for (size_t a = 1; a < width; a++)
             for (size_t b = 1; b < width; b++)
                 ignored->pair[a * width + b] = do_not_meet(words + a * pairs, words + b * pairs, pairs);

@@ -53,20 +53,23 @@ static bool are_same(const uint32_t a[3], const uint32_t b[3]) {
 static bool find_beside(matching *m, sk_allocator *allocator) {
     size_t size = 16;
     while (size < 6 * m->count) size *= 2;
-    uint32_t *table = sk_allocate(allocator, size * sizeof *table); // of edges: three times the triangle, and which of its
+    uint32_t *table =
+        sk_allocate(allocator, size * sizeof *table); // of edges: three times the triangle, and which of its
     if (!table) return false;
     memset(table, 0xff, size * sizeof *table);
     memset(m->beside, 0xff, m->count * sizeof *m->beside);
     for (uint32_t t = 0; t < m->count; t++)
         for (uint32_t k = 0; m->here[t] && k < 3; k++) {
-            const uint32_t a = m->triangle[t][k], b = m->triangle[t][(k + 1) % 3], low = a < b ? a : b, high = a < b ? b : a;
+            const uint32_t a = m->triangle[t][k], b = m->triangle[t][(k + 1) % 3], low = a < b ? a : b,
+                           high = a < b ? b : a;
             size_t at = sk_edge_place(low, high, size - 1);
             for (; table[at] != NOBODY; at = (at + 1) & (size - 1)) {
                 const uint32_t other = table[at] / 3, of = table[at] % 3;
                 const uint32_t c = m->triangle[other][of], d = m->triangle[other][(of + 1) % 3];
                 if ((c != low || d != high) && (c != high || d != low)) continue;
                 if (m->beside[other][of] != NOBODY) table[at] = 3 * t + k;
-                else if (!are_same(m->triangle[t], m->triangle[other])) m->beside[other][of] = t, m->beside[t][k] = other;
+                else if (!are_same(m->triangle[t], m->triangle[other]))
+                    m->beside[other][of] = t, m->beside[t][k] = other;
                 break;
             }
             if (table[at] == NOBODY) table[at] = 3 * t + k;
@@ -141,7 +144,8 @@ static bool lie_about(const matching *m, size_t first, size_t end) {
     return sum > 2 * sqrt((double)(end - first)) * count;
 }
 
-static void follow_curve(const matching *m, size_t first, size_t end, uint64_t *place, uint32_t *order, uint32_t *other) {
+static void follow_curve(const matching *m, size_t first, size_t end, uint64_t *place, uint32_t *order,
+                         uint32_t *other) {
     sk_vec3 low = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX}, high = {-SK_REAL_MAX, -SK_REAL_MAX, -SK_REAL_MAX};
     for (size_t t = first; t < end; t++) {
         sk_vec3 b = m->particles->built[m->triangle[t][0]];
@@ -149,7 +153,8 @@ static void follow_curve(const matching *m, size_t first, size_t end, uint64_t *
         high = (sk_vec3){sk_max(high.x, b.x), sk_max(high.y, b.y), sk_max(high.z, b.z)};
     }
     const sk_curve curve = sk_curve_through(low, high);
-    for (size_t t = first; t < end; t++) place[t - first] = sk_curve_place(&curve, m->particles->built[m->triangle[t][0]]);
+    for (size_t t = first; t < end; t++)
+        place[t - first] = sk_curve_place(&curve, m->particles->built[m->triangle[t][0]]);
     sk_sort_by_place(place, order + first, place + (end - first), other, end - first);
 }
 
@@ -188,7 +193,8 @@ bool sk_leaves_deal(uint32_t *partner, uint32_t *order, sk_allocator *allocator,
     matching m = {.particles = particles, .triangle = parts->triangle, .count = count, .here = here, .partner = partner};
     m.beside = sk_allocate(allocator, (count + 1) * sizeof *m.beside);
     m.left = sk_allocate(allocator, count + 1);
-    m.single = sk_allocate(allocator, (2 * count + 1) * sizeof *m.single); // each is put there when one is left, and at first
+    m.single =
+        sk_allocate(allocator, (2 * count + 1) * sizeof *m.single); // each is put there when one is left, and at first
     bool good = m.beside && m.left && m.single && find_beside(&m, allocator);
     memset(partner, 0xff, count * sizeof *partner);
     if (good) pair_cells(&m), pair_others(&m);

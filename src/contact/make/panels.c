@@ -86,7 +86,8 @@ static bin bin_of(const bins *b, const rectangle *leaf) {
 
 static size_t place_of(const bins *b, bin at) {
     const size_t square = BINS_SQUARE * BINS_SQUARE, squares = (b->across + BINS_SQUARE - 1) / BINS_SQUARE;
-    return (at.v / BINS_SQUARE * squares + at.u / BINS_SQUARE) * square + at.v % BINS_SQUARE * BINS_SQUARE + at.u % BINS_SQUARE;
+    return (at.v / BINS_SQUARE * squares + at.u / BINS_SQUARE) * square + at.v % BINS_SQUARE * BINS_SQUARE +
+           at.u % BINS_SQUARE;
 }
 
 static size_t bins_along(real wide, real side) {
@@ -106,7 +107,8 @@ static bool deal_sheet(making *m, uint32_t *leaf, size_t count) {
     }
     const real side = (real)sqrt(SK_PANEL_LEAVES * area / (double)count);
     b.across = bins_along(b.all.high.u - b.all.low.u, side), b.along = bins_along(b.all.high.v - b.all.low.v, side);
-    if (b.across > 4 * count || b.along > 4 * count || b.across * b.along > 4 * count + 64) { // a sheet with next to no area in its rectangle
+    if (b.across > 4 * count || b.along > 4 * count ||
+        b.across * b.along > 4 * count + 64) { // a sheet with next to no area in its rectangle
         m->flat[m->skin->piece[corner_of(m->skin, &m->skin->leaf[leaf[0]])]] = 0;
         split(m, leaf, count);
         return true;
@@ -142,7 +144,8 @@ bool sk_panels_deal(making *m) {
     if (!start) return false;
     for (size_t i = 0; i < leaves; i++) start[skin->piece[corner_of(skin, &skin->leaf[i])] + 1]++;
     for (size_t v = 0; v < skin->vertex_count; v++) start[v + 1] += start[v];
-    for (size_t i = 0; i < leaves; i++) spread->leaves.number[start[skin->piece[corner_of(skin, &skin->leaf[i])]]++] = (uint32_t)i;
+    for (size_t i = 0; i < leaves; i++)
+        spread->leaves.number[start[skin->piece[corner_of(skin, &skin->leaf[i])]]++] = (uint32_t)i;
     for (size_t v = 0, first = 0; v < skin->vertex_count && good; first = start[v++]) {
         if (start[v] == first) continue;
         if (m->flat[v]) good = deal_sheet(m, spread->leaves.number + first, start[v] - first);
@@ -171,7 +174,8 @@ void sk_panels_measure(making *m) {
             int count = corners_of_leaf(skin, leaf, corner);
             for (int a = 0; a < count; a++)
                 for (int b = 0; b < a; b++)
-                    if (a / 3 == b / 3) m->longest[p] = sk_max(m->longest[p], sk_length(side(skin, corner[a], corner[b])));
+                    if (a / 3 == b / 3)
+                        m->longest[p] = sk_max(m->longest[p], sk_length(side(skin, corner[a], corner[b])));
             for (int t = 0; t + 2 < count; t += 3) m->steep[p] = sk_max(m->steep[p], steep_of(m, corner + t));
         }
     }

@@ -7,7 +7,8 @@
 /* How many triangles an edge has. */
 static int faces_of(const sk_skin *skin, const uint32_t edge[2]) {
     uint32_t a = edge[0], b = edge[1];
-    if (skin->leaf_start[a + 1] - skin->leaf_start[a] > skin->leaf_start[b + 1] - skin->leaf_start[b]) a = edge[1], b = edge[0];
+    if (skin->leaf_start[a + 1] - skin->leaf_start[a] > skin->leaf_start[b + 1] - skin->leaf_start[b])
+        a = edge[1], b = edge[0];
     int count = 0;
     for (uint32_t i = skin->leaf_start[a]; i < skin->leaf_start[a + 1]; i++) {
         const sk_leaf *leaf = &skin->leaf[skin->leaf_of[i]];
@@ -53,7 +54,8 @@ bool sk_sheets_find(making *m) {
     for (size_t v = 0; v < skin->vertex_count; v++) {
         const uint32_t piece = skin->piece[v];
         const sk_vec4 *a = &m->along[piece];
-        sk_vec3 n = normal_of(m, piece), r = side(skin, piece, (uint32_t)v), along = unit((double)a->x, (double)a->y, (double)a->z);
+        sk_vec3 n = normal_of(m, piece), r = side(skin, piece, (uint32_t)v),
+                along = unit((double)a->x, (double)a->y, (double)a->z);
         if (!(sk_abs(sk_dot(n, r)) <= off)) m->flat[piece] = 0;
         m->spot[v] = (spot){sk_dot(along, r), sk_dot(sk_cross(n, along), r)};
     }

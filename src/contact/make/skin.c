@@ -75,7 +75,8 @@ static bool add_all(making *m, sk_allocator *allocator, const sk_only *only, con
     sk_skin *skin = m->skin;
     for (size_t t = 0; t < parts->triangle_count; t++) {
         const uint32_t *corner = parts->triangle[t];
-        m->here[t] = takes_part(m, only, corner[0]) && corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
+        m->here[t] = takes_part(m, only, corner[0]) && corner[0] != corner[1] && corner[1] != corner[2] &&
+                     corner[2] != corner[0];
     }
     if (!sk_leaves_deal(m->partner, m->order, allocator, m->particles, parts, m->here)) return false;
     for (size_t i = 0; i < parts->triangle_count; i++) {
@@ -129,7 +130,8 @@ static bool list_leaves(sk_skin *skin, sk_allocator *allocator) {
         }
         if (fill) break;
         for (size_t v = 0; v < vertices; v++) skin->leaf_start[v + 1] += skin->leaf_start[v];
-        good = (skin->leaf_of = sk_allocate(allocator, (skin->leaf_start[vertices] + 1) * sizeof *skin->leaf_of)) != NULL;
+        good =
+            (skin->leaf_of = sk_allocate(allocator, (skin->leaf_start[vertices] + 1) * sizeof *skin->leaf_of)) != NULL;
     }
     for (size_t v = vertices; good && v > 0; v--) skin->leaf_start[v] = skin->leaf_start[v - 1]; // they were moved on
     if (good) skin->leaf_start[0] = 0;

@@ -46,7 +46,8 @@ bool sk_solids_make(sk_skin *skin, sk_allocator *allocator, const sk_particles *
                     const sk_meeting_parts *parts) {
     if (!find_closed(skin, allocator)) return false;
     for (int fill = 0; fill < 2; fill++) {
-        if (fill && !(skin->inner = sk_allocate(allocator, (skin->inner_count + 1) * sizeof *skin->inner))) return false;
+        if (fill && !(skin->inner = sk_allocate(allocator, (skin->inner_count + 1) * sizeof *skin->inner)))
+            return false;
         skin->inner_count = 0;
         for (size_t b = 0; b < parts->body_count; b++) {
             const sk_meeting_body *body = &parts->body[b];

@@ -19,7 +19,8 @@ static void put_row(making *m, size_t row, size_t lane, uint32_t leaf, bool flat
     corners_in_row(m->skin, &m->skin->leaf[leaf], corner);
     for (int c = 0; c < 4; c++) spread->corner[row][c][lane] = corner[c];
     const uint32_t first[3] = {corner[0], corner[1], corner[2]}, second[3] = {corner[0], corner[1], corner[3]};
-    if (flat) put_inverse(m, first, spread->inverse[row][0], lane), put_inverse(m, second, spread->inverse[row][1], lane);
+    if (flat)
+        put_inverse(m, first, spread->inverse[row][0], lane), put_inverse(m, second, spread->inverse[row][1], lane);
 }
 
 static bool make_rows(making *m) {
@@ -28,7 +29,8 @@ static bool make_rows(making *m) {
     spread->row_start = sk_allocate(m->allocator, (groups + 1) * sizeof *spread->row_start);
     if (!spread->row_start) return false;
     for (size_t p = 0; p < spread->count; p++) {
-        uint32_t leaves = spread->leaves.start[p + 1] - spread->leaves.start[p], *rows = &spread->row_start[p / SK_PANEL_LANES + 1];
+        uint32_t leaves = spread->leaves.start[p + 1] - spread->leaves.start[p],
+                 *rows = &spread->row_start[p / SK_PANEL_LANES + 1];
         if (leaves > *rows) *rows = leaves;
     }
     for (size_t g = 0; g < groups; g++) spread->row_start[g + 1] += spread->row_start[g];
@@ -64,8 +66,8 @@ static bool reserve(making *m) {
     m->centre = sk_allocate(a, leaves * sizeof *m->centre);
     m->bin = sk_allocate(a, leaves * sizeof *m->bin);
     m->of_leaf = sk_allocate(a, leaves * sizeof *m->of_leaf);
-    return spread->of_leaf && spread->leaves.start && spread->leaves.number && spread->vertex_out && spread->patch_out &&
-           spread->mark && m->centre && m->of_leaf && m->bin;
+    return spread->of_leaf && spread->leaves.start && spread->leaves.number && spread->vertex_out &&
+           spread->patch_out && spread->mark && m->centre && m->of_leaf && m->bin;
 }
 
 static bool reserve_panels(making *m) {
@@ -89,9 +91,9 @@ static bool reserve_panels(making *m) {
     m->longest = sk_allocate(a, panels * sizeof *m->longest);
     m->order = sk_allocate(a, panels * sizeof *m->order);
     bool good = sk_tree_reserve(&spread->tree, a, spread->count);
-    return good && spread->sixteen && spread->least && spread->out && spread->was_out && spread->turned && spread->box && spread->wide &&
-           spread->met && spread->beside.start && m->in_bin && m->apart && m->steep && m->of_panel && m->longest &&
-           m->order;
+    return good && spread->sixteen && spread->least && spread->out && spread->was_out && spread->turned &&
+           spread->box && spread->wide && spread->met && spread->beside.start && m->in_bin && m->apart && m->steep &&
+           m->of_panel && m->longest && m->order;
 }
 
 /* Lanes of no panel are never off their course. */
@@ -99,7 +101,8 @@ static void free_lanes(sk_spread *spread) {
     for (size_t p = spread->count; p % SK_PANEL_LANES; p++)
         for (int n = 0; n < 6; n++) {
             sk_tree_block *course = &spread->sixteen[p / SK_PANEL_LANES].course;
-            course->low[n / 3][n % 3][p % SK_PANEL_LANES] = -SK_REAL_MAX, course->high[n / 3][n % 3][p % SK_PANEL_LANES] = SK_REAL_MAX;
+            course->low[n / 3][n % 3][p % SK_PANEL_LANES] = -SK_REAL_MAX,
+                                          course->high[n / 3][n % 3][p % SK_PANEL_LANES] = SK_REAL_MAX;
         }
 }
 
@@ -122,23 +125,26 @@ bool sk_spread_make(sk_touch *touch, sk_allocator *allocator) {
     m.spot = sk_allocate(allocator, vertices * sizeof *m.spot);
     bool good = m.normal && m.along && m.flat && m.border && m.spot;
     if (good && sk_sheets_find(&m)) good = make_panels(&m);
-    void *arrays[] = {m.normal, m.along, m.flat, m.border, m.spot, m.centre, m.of_leaf, m.of_panel, m.longest, m.apart, m.steep, m.bin, m.order,
-                      m.in_bin, m.beside.data, m.members.data, m.around.data, m.starts[0].data, m.starts[1].data, m.block.data,
-                      m.point, m.hull};
+    void *arrays[] = {m.normal,         m.along,      m.flat,        m.border,       m.spot,        m.centre,
+                      m.of_leaf,        m.of_panel,   m.longest,     m.apart,        m.steep,       m.bin,
+                      m.order,          m.in_bin,     m.beside.data, m.members.data, m.around.data, m.starts[0].data,
+                      m.starts[1].data, m.block.data, m.point,       m.hull};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     if (!good) sk_spread_release(&touch->spread, allocator);
     return good;
 }
 
 void sk_spread_release(sk_spread *spread, sk_allocator *allocator) {
-    sk_lists *lists[] = {&spread->leaves, &spread->blocks, &spread->beside, &spread->members, &spread->around, &spread->through};
+    sk_lists *lists[] = {&spread->leaves,  &spread->blocks, &spread->beside,
+                         &spread->members, &spread->around, &spread->through};
     for (size_t i = 0; i < sizeof lists / sizeof *lists; i++) {
         sk_release(allocator, lists[i]->start);
         sk_release(allocator, lists[i]->number);
     }
-    void *arrays[] = {spread->sixteen, spread->least, spread->of_leaf, spread->block, spread->out, spread->was_out, spread->turned, spread->vertex_out, spread->patch_out,
-                      spread->mark, spread->row_start, spread->corner, spread->inverse, spread->gradient, spread->box, spread->wide,
-                      spread->met};
+    void *arrays[] = {spread->sixteen,   spread->least,  spread->of_leaf,    spread->block,     spread->out,
+                      spread->was_out,   spread->turned, spread->vertex_out, spread->patch_out, spread->mark,
+                      spread->row_start, spread->corner, spread->inverse,    spread->gradient,  spread->box,
+                      spread->wide,      spread->met};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_tree_release(&spread->tree, allocator);
     *spread = (sk_spread){.count = 0};

@@ -33,19 +33,19 @@ typedef struct making {
     const sk_skin *skin;
     sk_spread *spread;
     sk_allocator *allocator;
-    double (*normal)[3];     /* of pieces, by their numbers: their normals, */
-    sk_vec4 *along;          /* and a direction on their planes */
-    uint8_t *flat;           /* whether they are */
-    uint8_t *border;         /* edges that have one triangle */
-    spot *spot;              /* of vertices */
-    sk_vec4 *centre;         /* of leaves */
+    double (*normal)[3]; /* of pieces, by their numbers: their normals, */
+    sk_vec4 *along;      /* and a direction on their planes */
+    uint8_t *flat;       /* whether they are */
+    uint8_t *border;     /* edges that have one triangle */
+    spot *spot;          /* of vertices */
+    sk_vec4 *centre;     /* of leaves */
     rectangle *of_leaf, *of_panel;
-    real *longest;           /* edge of a panel */
-    real *steep;             /* 1/m: how much J of its triangles changes with its corners, at most; */
-    real *apart;             /* and the least between its features and those beside it */
-    bin *bin;                /* of panels: which, on their sheet */
-    beginning *order;        /* of a piece's panels */
-    uint32_t *in_bin;        /* and these by their bins */
+    real *longest;    /* edge of a panel */
+    real *steep;      /* 1/m: how much J of its triangles changes with its corners, at most; */
+    real *apart;      /* and the least between its features and those beside it */
+    bin *bin;         /* of panels: which, on their sheet */
+    beginning *order; /* of a piece's panels */
+    uint32_t *in_bin; /* and these by their bins */
     numbers beside, members, around, starts[2]; /* of members, and around */
     struct {
         sk_panel_block *data;
@@ -83,14 +83,16 @@ static inline void corners_in_row(const sk_skin *skin, const sk_leaf *leaf, uint
         corner[0] = edge[0], corner[1] = edge[1], corner[2] = corner[3] = edge[0];
         return;
     }
-    const uint32_t *t = skin->triangle[leaf->first_triangle], *s = leaf->triangles > 1 ? skin->triangle[leaf->first_triangle + 1] : t;
+    const uint32_t *t = skin->triangle[leaf->first_triangle],
+                   *s = leaf->triangles > 1 ? skin->triangle[leaf->first_triangle + 1] : t;
     int third = 0;
     uint32_t other = t[0];
     for (int k = 0; k < 3 && s != t; k++) {
         if (t[k] != s[0] && t[k] != s[1] && t[k] != s[2]) third = k;
         if (s[k] != t[0] && s[k] != t[1] && s[k] != t[2]) other = s[k];
     }
-    corner[0] = t[(third + 1) % 3], corner[1] = t[(third + 2) % 3], corner[2] = t[third], corner[3] = s == t ? t[third] : other;
+    corner[0] = t[(third + 1) % 3], corner[1] = t[(third + 2) % 3], corner[2] = t[third],
+    corner[3] = s == t ? t[third] : other;
 }
 
 static inline uint32_t piece_of_panel(const making *m, size_t p) {

@@ -1,7 +1,7 @@
 /* The tree of leaves' boxes: its order is that of a curve through the bodies as they were built (Morton's), and never changes;
  * only boxes do. */
-#include "contact/search/boxes.h"
 #include "contact/make/curve.h"
+#include "contact/search/boxes.h"
 
 static sk_curve curve_of(const sk_skin *skin) {
     sk_vec3 low = {SK_REAL_MAX, SK_REAL_MAX, SK_REAL_MAX}, high = {-SK_REAL_MAX, -SK_REAL_MAX, -SK_REAL_MAX};

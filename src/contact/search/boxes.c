@@ -150,7 +150,8 @@ static void find_unfeatured(void *data, int thread, size_t begin, size_t end) {
     for (size_t i = begin; i < end; i++)
         for (int k = 0; k < 2; k++) {
             uint8_t *featured = &touch->featured[k ? partner[i] : first[i]];
-            if (!__atomic_load_n(featured, __ATOMIC_RELAXED)) __atomic_store_n(featured, SK_TO_BE_FEATURED, __ATOMIC_RELAXED);
+            if (!__atomic_load_n(featured, __ATOMIC_RELAXED))
+                __atomic_store_n(featured, SK_TO_BE_FEATURED, __ATOMIC_RELAXED);
         }
 }
 
@@ -175,7 +176,8 @@ static void box_some_vertices(void *data, int thread, size_t begin, size_t end) 
     for (size_t v = begin; v < end; v++) {
         if (sk_vertex_is_out(&touch->spread, v)) continue;
         bool lost = touch->lost[v], wild = touch->wild[v];
-        if (job->all || lost || (wild && job->wild)) make_vertex_box(touch, v, touch->still || (job->ways && (lost | wild)));
+        if (job->all || lost || (wild && job->wild))
+            make_vertex_box(touch, v, touch->still || (job->ways && (lost | wild)));
     }
 }
 
@@ -183,7 +185,8 @@ static void box_some_vertices(void *data, int thread, size_t begin, size_t end) 
 static void move_turned(sk_touch *touch) {
     sk_spread *spread = &touch->spread;
     for (size_t p = 0; p < spread->count; p++) {
-        for (uint32_t i = spread->leaves.start[p]; i < spread->leaves.start[p + 1] && spread->turned[p]; i++) touch->moved[spread->leaves.number[i]] = 1;
+        for (uint32_t i = spread->leaves.start[p]; i < spread->leaves.start[p + 1] && spread->turned[p]; i++)
+            touch->moved[spread->leaves.number[i]] = 1;
         spread->turned[p] = 0;
     }
 }

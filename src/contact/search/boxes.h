@@ -3,8 +3,8 @@
 #define SK_CONTACT_BOXES_H
 
 #include "base/isa.h"
-#include "base/wide_types.h"
 #include "base/quad.h"
+#include "base/wide_types.h"
 #include "contact/skin.h"
 #if defined(__wasm_simd128__) && !defined(SKEIN_DOUBLE)
 #include <wasm_simd128.h>
@@ -63,7 +63,7 @@ enum {
     SK_LEAF_VERTICES = 4,
     SK_LEAF_CORNERS = SK_LEAF_VERTICES + 2, /* vertices, and triangles */
     SK_WIDEST_LEAF = (1 << 14) - 1,         /* cells */
-    /* where a row begins that has so many numbers; after those of the first end, it stands whether the leaf is too wide */
+/* where a row begins that has so many numbers; after those of the first end, it stands whether the leaf is too wide */
 #define SK_CELL_ROW(row, numbers) ((row) * (numbers) + ((row) >= SK_CELL_ROWS / 2))
     SK_EDGES_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_EDGES,
     SK_CORNERS_WIDE = SK_CELL_ROWS / 2 * SK_LEAF_CORNERS
@@ -108,12 +108,13 @@ typedef struct sk_tree {
 typedef size_t sk_tree_blocks_kernel(const sk_tree *tree, const sk_box *box, size_t first, uint32_t *block);
 /* Lists who of some lanes of block a may meet whom of block b, or of later lanes than their own if asked for: the lane of a,
  * and behind it in four bits that of b. Boxes of the former are those of leaves. At most SK_TREE_WIDTH squared. */
-typedef size_t sk_tree_hits_kernel(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward,
-                                   uint32_t *hit);
+typedef size_t sk_tree_hits_kernel(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box,
+                                   bool forward, uint32_t *hit);
 
 /* Whether two boxes may meet at some time. */
 static inline bool sk_boxes_meet(const sk_box *a, const sk_box *b) {
-    const sk_quad_lanes apart = ((a->low[0] > b->high[0]) & (a->low[1] > b->high[1])) | ((b->low[0] > a->high[0]) & (b->low[1] > a->high[1]));
+    const sk_quad_lanes apart =
+        ((a->low[0] > b->high[0]) & (a->low[1] > b->high[1])) | ((b->low[0] > a->high[0]) & (b->low[1] > a->high[1]));
     return !(apart[0] | apart[1] | apart[2]);
 }
 

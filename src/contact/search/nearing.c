@@ -11,9 +11,9 @@ SK_KERNELS(sk_nearing_kernel, corners_nearing);
 SK_KERNELS(sk_nearing_kernel, edges_nearing);
 
 #ifdef SK_ISA
+#include "contact/closest.h"
 #include "contact/lanes.h"
 #include "contact/search/bits.h"
-#include "contact/closest.h"
 
 SK_INLINE const sk_wide *part_of(const real *reals, size_t k) {
     return (const sk_wide *)(const void *)(reals + k);
@@ -68,8 +68,7 @@ SK_INLINE void closing(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_va
     }
 }
 
-void SK_KERNEL(corners_closing)(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values,
-                                sk_pairs *pairs) {
+void SK_KERNEL(corners_closing)(const sk_vec4 *x, const sk_vec4 *way, const sk_closing_values *values, sk_pairs *pairs) {
     closing(x, way, values, pairs, 1);
 }
 

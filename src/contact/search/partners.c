@@ -58,7 +58,8 @@ static void fit(sk_touch *touch) {
     enum { BLOCKS_AT_ONCE = 64 };
     sk_tree *tree = &touch->tree;
     size_t leaves = touch->skin.leaf_count + 1;
-    fitting job = {.touch = touch, .count = touch->skin.leaf_count, .changed = touch->changed, .above = touch->changed + leaves};
+    fitting job = {
+        .touch = touch, .count = touch->skin.leaf_count, .changed = touch->changed, .above = touch->changed + leaves};
     for (; job.level < tree->levels; job.level++) {
         sk_parallel_pieces(touch->tasks, 0, tree->blocks[job.level], BLOCKS_AT_ONCE, fit_blocks, &job);
         uint8_t *above = job.above;
@@ -105,8 +106,8 @@ static void mark_rings(const sk_touch *touch, sk_ring_mark *mark, const looking_
 
 /* Whether two leaves are to be listed. Of two that are both looked for, one lists the other: where everybody is, the one in
  * the lower slot; else the first of both. */
-static bool are_partners(const sk_parts_job *job, const sk_ring_mark *mark, const looking_block *block, uint32_t lane, uint32_t a,
-                         uint32_t b) {
+static bool are_partners(const sk_parts_job *job, const sk_ring_mark *mark, const looking_block *block, uint32_t lane,
+                         uint32_t a, uint32_t b) {
     const sk_touch *touch = job->touch;
     bool around = mark[b].block == block->number + 1 && (mark[b].lanes >> lane & 1);
     if (around && !job->calm_too && touch->calm.patch[touch->calm.of_leaf[b < a ? b : a]].calm) return false;
@@ -124,7 +125,8 @@ static bool list_partners(const sk_parts_job *job, sk_search_part *part, const l
     size_t blocks = sk_tree_blocks[touch->isa](&touch->tree, &block->box, touch->everybody ? a : 0, part->block);
     for (size_t k = 0; k < blocks; k++) {
         size_t b = part->block[k];
-        size_t count = sk_tree_hits[touch->isa](&touch->tree, a, b, block->lanes, touch->hot_box, touch->everybody, hit);
+        size_t count =
+            sk_tree_hits[touch->isa](&touch->tree, a, b, block->lanes, touch->hot_box, touch->everybody, hit);
         // (a list may have grown when there was no memory for the other)
         if (part->first.count + count > part->first.capacity || part->first.count + count > part->second.capacity) {
             part->first.count = part->second.count = before;
@@ -182,11 +184,14 @@ static bool begin_parts(sk_touch *touch, sk_allocator *allocator) {
         sk_search_part *part = &touch->part[i];
         part->first.count = part->second.count = 0;
         bool used = i == 0 || (touch->tasks && i < sk_tasks_count(touch->tasks));
-        if (used && !part->block && !(part->block = sk_allocate(allocator, (touch->tree.blocks[0] + 1) * sizeof *part->block)))
+        if (used && !part->block &&
+            !(part->block = sk_allocate(allocator, (touch->tree.blocks[0] + 1) * sizeof *part->block)))
             return false;
-        if (used && !part->ring && !(part->ring = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->ring)))
+        if (used && !part->ring &&
+            !(part->ring = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->ring)))
             return false;
-        if (used && !part->start && !(part->start = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->start)))
+        if (used && !part->start &&
+            !(part->start = sk_allocate(allocator, (touch->skin.leaf_count + 1) * sizeof *part->start)))
             return false;
     }
     return true;
@@ -259,14 +264,16 @@ static void deal_many(sk_touch *touch) {
 bool sk_touch_partners(sk_touch *touch, sk_allocator *allocator, size_t most, bool calm_too, bool *too_many) {
     const size_t worth = 32, few = 128; // blocks; pairs of leaves
     size_t count = 0;
-    sk_parts_job job = {.touch = touch, .most = most, .calm_too = calm_too, .at_once = 8, .work = list_part, .grow = grow_lists};
+    sk_parts_job job = {
+        .touch = touch, .most = most, .calm_too = calm_too, .at_once = 8, .work = list_part, .grow = grow_lists};
     fit(touch);
     if (!begin_parts(touch, allocator) || !sk_touch_work(&job, allocator, touch->tree.blocks[0], worth)) return false;
     for (int i = 0; i < touch->part_count; i++) count += touch->part[i].first.count;
     touch->partner.count = touch->first.count = 0;
     *too_many = count > most;
     if (*too_many) return true;
-    if (!SK_RESERVE(allocator, &touch->partner, count + 1) || !SK_RESERVE(allocator, &touch->first, count + 1)) return false;
+    if (!SK_RESERVE(allocator, &touch->partner, count + 1) || !SK_RESERVE(allocator, &touch->first, count + 1))
+        return false;
     touch->partner.count = touch->first.count = count;
     if (count < few) insert_few(touch);
     else deal_many(touch);

@@ -198,8 +198,7 @@ bool sk_touch_search(sk_touch *touch, sk_allocator *allocator, sk_touch_search_s
     sk_parallel_pieces(touch->tasks, 0, count, VERTICES_AT_ONCE, ways ? aim : expect, touch);
     touch->aimed = ways;
     for (int sort = 0; sort < SK_PAIR_SORTS && good && !gives_up; sort++)
-        good = list_fresh(touch, allocator, sort, search) &&
-               sk_touch_keep(touch, allocator, sort, everybody, ways);
+        good = list_fresh(touch, allocator, sort, search) && sk_touch_keep(touch, allocator, sort, everybody, ways);
     touch->found = good && !gives_up;
     return good;
 }

@@ -67,7 +67,8 @@ size_t SK_KERNEL(blocks)(const sk_tree *tree, const sk_box *box, size_t first, u
     return count;
 }
 
-size_t SK_KERNEL(hits)(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward, uint32_t *hit) {
+size_t SK_KERNEL(hits)(const sk_tree *tree, size_t a, size_t b, uint32_t lanes, const sk_box *box, bool forward,
+                       uint32_t *hit) {
     size_t count = 0;
     if (tree->levels > 1 && a != b) {
         sk_box around = box_of_block(tree, b);
