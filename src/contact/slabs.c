@@ -10,7 +10,7 @@
 #include "base/tasks.h"
 #include "contact/touch.h"
 
-enum { PAIRS_AT_ONCE = 1024 /* by one thread, at least */, MOST_PIECES = 32 };
+enum { PAIRS_AT_ONCE = 1024 /* by one thread, at least */, VERTICES_AT_ONCE = 4096, MOST_PIECES = 32 };
 
 typedef struct deal {
     sk_touch *touch;
@@ -38,7 +38,7 @@ static void set_push(const deal *d, int sort, uint32_t entry, sk_push *push) {
     for (int c = 0; c < 3; c++) push->before[c] = before[c];
 }
 
-static real along(const deal *d, uint32_t vertex) {
+static real along(const deal *d, size_t vertex) {
     const sk_vec4 *p = &d->touch->p[vertex];
     return d->axis == 0 ? p->x : d->axis == 1 ? p->y : p->z;
 }
@@ -73,12 +73,22 @@ static void cut_slabs(deal *d) {
 
 const size_t sk_slab_round[] = {0, SK_MOST_SLABS, SK_MOST_SLABS * 3 / 2, SK_SLAB_CLASSES - 1, SK_SLAB_CLASSES};
 
+/* In which slab each vertex begins, once: a pair asks four times, and is one of ten at its vertex. */
+static void place_some(void *data, int thread, size_t begin, size_t end) {
+    (void)thread;
+    const deal *d = data;
+    for (size_t v = begin; v < end; v++) {
+        const real at = d->per * along(d, v) - d->first;
+        const int slab = at > 0 ? at < SK_MOST_SLABS - 1 ? (int)at : SK_MOST_SLABS - 1 : 0; // of no number, the first
+        d->touch->slab[v] = (uint8_t)slab;
+    }
+}
+
 /* In which class of its sort a pair with these corners is. */
-static int class_of(const deal *d, const uint32_t corner[4]) {
+static int class_of(const uint8_t *slab_of, const uint32_t corner[4]) {
     int least = SK_MOST_SLABS, most = 0;
     for (int c = 0; c < 4; c++) {
-        const real at = d->per * along(d, corner[c]) - d->first;
-        const int slab = at > 0 ? at < SK_MOST_SLABS - 1 ? (int)at : SK_MOST_SLABS - 1 : 0; // of no number, the first
+        const int slab = slab_of[corner[c]];
         least = slab < least ? slab : least, most = slab > most ? slab : most;
     }
     if (least == most) return least;
@@ -92,7 +102,7 @@ static void classify_some(void *data, int thread, size_t begin, size_t end) {
     size_t *count = d->place[begin / d->a_piece];
     for (size_t i = begin; i < end; i++) {
         const int first = i < d->touch->near[SK_CORNERS].count ? 0 : SK_SLAB_CLASSES;
-        count[pushes->class_of.data[i] = (uint8_t)(first + class_of(d, pushes->pair.data[i].corner))]++;
+        count[pushes->class_of.data[i] = (uint8_t)(first + class_of(d->touch->slab, pushes->pair.data[i].corner))]++;
     }
 }
 
@@ -121,6 +131,7 @@ bool sk_touch_deal(sk_touch *touch, sk_allocator *allocator, real gain, real fri
     d.a_piece = d.all / MOST_PIECES + 1 > PAIRS_AT_ONCE ? d.all / MOST_PIECES + 1 : PAIRS_AT_ONCE;
     in_pieces(&d, set_some);
     cut_slabs(&d);
+    sk_parallel_pieces(touch->tasks, 0, touch->skin.vertex_count, VERTICES_AT_ONCE, place_some, &d);
     in_pieces(&d, classify_some);
     size_t at = 0;
     for (int of = 0; of < SK_PUSH_CLASSES; of++) {

@@ -440,20 +440,16 @@ static int list_arrays(sk_touch *touch, void ***array, size_t *size, size_t *cou
     const size_t leaves = skin->leaf_count + SK_TREE_WIDTH;
     int n = 0;
 #define LIST(name, number) array[n] = (void **)&touch->name, size[n] = sizeof *touch->name, count[n++] = number
-    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices),
-        LIST(rank, vertices);
-    LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices), LIST(seen, vertices),
-        LIST(inverse, vertices);
-    LIST(share, vertices), LIST(next_share, vertices), LIST(lowered, vertices), LIST(loses, vertices),
-        LIST(lost, vertices), LIST(wild, vertices);
-    LIST(waiting, vertices), LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
-    LIST(faces.plane, vertices);
-    LIST(press.number, vertices), LIST(press.slot, vertices);
-    LIST(corner_box, vertices), LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles);
-    LIST(hot, leaves), LIST(leaf_box, leaves), LIST(hot_box, leaves);
-    LIST(edge_cells, leaves), LIST(corner_cells, leaves);
-    LIST(torn, leaves), LIST(room, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves),
-        LIST(changed, 2 * leaves), LIST(start, leaves);
+    LIST(slot, vertices), LIST(p, vertices), LIST(q, vertices), LIST(way, vertices), LIST(yielded, vertices);
+    LIST(slab, vertices), LIST(rank, vertices), LIST(at, vertices), LIST(in_the_end, vertices), LIST(course, vertices);
+    LIST(seen, vertices), LIST(inverse, vertices), LIST(share, vertices), LIST(next_share, vertices);
+    LIST(lowered, vertices), LIST(loses, vertices), LIST(lost, vertices), LIST(wild, vertices), LIST(waiting, vertices);
+    LIST(waits, vertices), LIST(asked_at, vertices), LIST(inner_slot, skin->inner_count + 1);
+    LIST(faces.plane, vertices), LIST(press.number, vertices), LIST(press.slot, vertices), LIST(corner_box, vertices);
+    LIST(vertex_box, vertices), LIST(edge_box, edges), LIST(triangle_box, triangles), LIST(hot, leaves);
+    LIST(leaf_box, leaves), LIST(hot_box, leaves), LIST(edge_cells, leaves), LIST(corner_cells, leaves);
+    LIST(torn, leaves), LIST(room, leaves), LIST(anew, leaves), LIST(moved, leaves), LIST(featured, leaves);
+    LIST(changed, 2 * leaves), LIST(start, leaves);
 #undef LIST
     return n;
 }

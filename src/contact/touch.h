@@ -135,6 +135,7 @@ typedef struct sk_touch {
     sk_vec4 *way;             /* from `stand` to q, less what all go together; w: how far that leads from p, at most */
     sk_vec4 *stand;           /* where it is after a substep if it goes none of its way, less the same: p, or */
     sk_vec4 *yielded;         /* where who is in the way of pins has room (yield.c) */
+    uint8_t *slab;            /* of space, in which it begins a push (slabs.c) */
     uint8_t *rank;            /* how far from a pin, in pairs; SK_STANDS: nobody moves it */
     sk_vec4 *at, *in_the_end; /* of a search: where it is expected now, and when that ends */
     sk_course *course;
