@@ -29,7 +29,7 @@
 #include "io/file.h"
 #include "io/mesh.h"
 #include "io/pc2.h"
-#include "sanitized.h"
+#include "sparing.h"
 
 #define COUNT(array_) (sizeof(array_) / sizeof *(array_))
 

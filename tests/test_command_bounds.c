@@ -115,7 +115,7 @@ static void a_run_ends_when_its_time_is_up(void **state) {
     assert_string_equal(o.err, "skein run: --max-time 0.01: the time is up, and nothing was finished\n");
     outcome_free(&o);
     // one that suffices makes no difference
-    const char *plenty = SANITIZED ? "900000G" : "8G"; // sanitizers reserve terabytes
+    const char *plenty = SPARING ? "900000G" : "8G"; // sanitizers reserve terabytes
     o = SKEIN("run", s, "--max-time", "1000", "--max-memory", plenty);
     hash_of(o);
     assert_says(2, "", "skein run: --max-time soon: expected seconds, 0.01 to 1e7\n", "run", s, "--max-time", "soon");
@@ -125,7 +125,7 @@ static void a_run_ends_when_its_time_is_up(void **state) {
 
 static void memory_has_a_bound(void **state) {
     (void)state;
-    if (SANITIZED) skip(); // its own memory is over any bound
+    if (SPARING) skip(); // its own memory is over any bound
     outcome o = SKEIN("run", tiny_scene(), "--set", "bodies.0.grid=[2000, 2000]", "--max-memory", "100M");
     if (!o.status) fail_msg("4 million particles in 100 MB");
     assert_contains(o.err, "memory");
@@ -138,7 +138,7 @@ static void memory_has_a_bound(void **state) {
 /* Where a program has asked for a locale that writes 0,5, as one with a window would, files are the same. */
 static void a_locale_changes_no_number(void **state) {
     (void)state;
-    if (SANITIZED) skip(); // a sanitizer's library wants to be the first
+    if (SPARING) skip(); // a sanitizer's library wants to be the first
     char command[300];
     snprintf(command, sizeof command, "localedef -i de_DE -f UTF-8 %s >/dev/null 2>&1", in_folder("de_DE.UTF-8"));
     if (system(command)) skip(); // no package locales

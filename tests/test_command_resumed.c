@@ -7,7 +7,7 @@
 #include <hdf5.h>
 #endif
 
-static int most_kills = SANITIZED ? 8 : 40;
+static int most_kills = SPARING ? 8 : 40;
 static bool draws; /* a picture and a film, too, which take most of the time */
 
 /* Every format there is, on a sheet that swings over a ball. */

@@ -5,7 +5,7 @@
 
 #include <skein/record.h>
 
-#include "sanitized.h"
+#include "sparing.h"
 
 enum { GIGABYTE = 1000000000, DEPTH = 100000 };
 
@@ -71,7 +71,7 @@ static outcome run_in_little(const char *const *arguments) {
     struct rlimit before, low;
     assert_int_equal(getrlimit(RLIMIT_DATA, &before), 0);
     low = before;
-    if (!SANITIZED) low.rlim_cur = 400u << 20;
+    if (!SPARING) low.rlim_cur = 400u << 20;
     assert_int_equal(setrlimit(RLIMIT_DATA, &low), 0);
     outcome o = finish_skein(start_skein((surroundings){0}, arguments));
     assert_int_equal(setrlimit(RLIMIT_DATA, &before), 0);

@@ -196,7 +196,7 @@ static bool play(purse *p, uint64_t *hash) {
 }
 
 /* Sanitizers are slow: there every seventh allocation has its turn; else every second. */
-enum { STRIDE = SANITIZED ? 7 : 2 };
+enum { STRIDE = SPARING ? 7 : 2 };
 
 /* Each allocation fails once: the call fails, is made again, and the run ends as one in which nothing failed. */
 static void one_failure_is_made_good(void **state) {

@@ -2,7 +2,7 @@
  * the world is in which it hangs. */
 #include "all_methods.h"
 #include "helpers.h"
-#include "sanitized.h"
+#include "sparing.h"
 
 static const char *const isas[] = {"sse", "avx2", "avx512"}; // what SKEIN_SIMD takes; what is not there is sse
 
@@ -288,11 +288,11 @@ static void stretch_knows_no_speed(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++)
         for (int kind = A_GRID; kind <= A_MESH; kind++)
             for (size_t i = 0; i < COUNT(isas); i++) {
-                if (i && (SANITIZED || m % 3 != 1)) continue; // bits are the same on all of them: test_bits.c
+                if (i && (SPARING || m % 3 != 1)) continue; // bits are the same on all of them: test_bits.c
                 stretch still = stretch_at(0, all_methods[m], (sheet_kind)kind, isas[i], BY_PLACES);
                 assert_true(still.mean > 0.005); // tethers are taut at times
                 for (int by = BY_PLACES; by <= BY_VELOCITIES; by++)
-                    for (int speed = SANITIZED ? 30 : 3; speed <= 30; speed *= 10) {
+                    for (int speed = SPARING ? 30 : 3; speed <= 30; speed *= 10) {
                         stretch moving = stretch_at(speed, all_methods[m], (sheet_kind)kind, isas[i], (moved_by)by);
                         assert_share(moving.mean, still.mean, 0.02);
                         assert_share(moving.worst, still.worst, 0.02);
@@ -332,7 +332,7 @@ static void once_a_frame_is_enough(void **state) {
     for (size_t m = 0; m < COUNT(all_methods); m++)
         for (int kind = A_GRID; kind <= A_MESH; kind++)
             for (size_t i = 0; i < COUNT(isas); i++) {
-                if (i && (SANITIZED || m % 3 != 1)) continue;
+                if (i && (SPARING || m % 3 != 1)) continue;
                 int substeps = substeps_of(all_methods[m]);
                 double coarse = stretch_of_run(all_methods[m], (sheet_kind)kind, isas[i], substeps, 1),
                        fine = stretch_of_run(all_methods[m], (sheet_kind)kind, isas[i], substeps, substeps);

@@ -312,7 +312,7 @@ static void measures_the_passes_of_a_step(void **state) {
             add_gravity(worlds[w]);
             OK(worlds[w], skein_collider_add(worlds[w], "plane", SKEIN_SETTINGS(SKEIN_REAL("offset", -0.1)), NULL));
         }
-        for (int i = 0; i < (SANITIZED ? 3 : 20); i++) {
+        for (int i = 0; i < (SPARING ? 3 : 20); i++) {
             OK(worlds[0], skein_world_step(worlds[0], 1.0 / 120));
             OK(worlds[1], skein_world_profile(worlds[1], 1.0 / 120, passes, MOST, &count));
         }

@@ -124,7 +124,7 @@ static void flip(const skein_world *world, size_t particle, bool velocity) {
 
 static void a_flipped_bit_is_named(void **state) {
     (void)state;
-    const int all = SANITIZED ? 100 : 1000;
+    const int all = SPARING ? 100 : 1000;
     static const uint32_t particles[] = {0, 1, 64, 65, 100, 150, 214};
     static const int bodies[] = {-1, 0, 0, 0, 1, 1, 1};
     for (size_t i = 0; i < COUNT(particles); i++) {

@@ -53,7 +53,7 @@ static uint32_t first_of(const skein_world *world, skein_handle body) {
 static void what_rests_sleeps_and_counts(void **state) {
     (void)state;
     for (size_t m = 0; m < COUNT(all_methods); m++) {
-        if (!strcmp(all_methods[m], "explicit_euler") || (SANITIZED && m % 3)) continue; // there nothing rests
+        if (!strcmp(all_methods[m], "explicit_euler") || (SPARING && m % 3)) continue; // there nothing rests
         skein_world *world = ground(all_methods[m], 1);
         if (strcmp(all_methods[m], "xpbd") != 0 && strcmp(all_methods[m], "pbd") != 0 &&
             strcmp(all_methods[m], "backward_euler") != 0)
@@ -309,7 +309,7 @@ static void what_loses_its_hold_falls(void **state) {
     (void)state;
     enum { DISABLED, REMOVED, PLACED, TELEPORTED, UNPINNED, LED, ITSELF, WAYS };
     for (int way = 0; way < WAYS; way++)
-        for (int when = 0; when < (SANITIZED ? 1 : way == LED ? 2 : 3); when++) {
+        for (int when = 0; when < (SPARING ? 1 : way == LED ? 2 : 3); when++) {
             skein_world *world = ground("xpbd", 1);
             // one whose corners alone are pinned keeps awake what lies on it
             skein_handle plate = sheet(world, "plate", when == 2 ? "corners" : "all", when == 1 ? 0.05 : 0, 0, 0.5, 0);
@@ -750,7 +750,7 @@ static void it_goes_on_from_anywhere(void **state) {
     }
     assert_true(changes >= 5);
     skein_world_destroy(world);
-    for (int s = 0; s <= (PILE_STEPS - 1) / EVERY; s += SANITIZED ? 5 : 1) {
+    for (int s = 0; s <= (PILE_STEPS - 1) / EVERY; s += SPARING ? 5 : 1) {
         skein_world *other = pile(1 + s % 3);
         if (s % 2) steps(other, 150, dt); // whatever slept there
         OK(other, skein_snapshot_read(other, saved[s].bytes, saved[s].size));
@@ -875,7 +875,7 @@ static void without_memory_it_says_so(void **state) {
     assert_int_equal(play(&p), 0);
     const size_t calls = p.calls;
     int told = 0;
-    for (size_t at = 0; at < calls; at += SANITIZED ? 11 : 3) {
+    for (size_t at = 0; at < calls; at += SPARING ? 11 : 3) {
         purse one = {.fail_at = at};
         told += play(&one) != 0;
     }

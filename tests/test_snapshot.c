@@ -213,7 +213,7 @@ static void every_scene(void **state) {
             continue; // meshes are to be fetched
         snprintf(path, sizeof path, "scenes/%s", entry->d_name);
         skein_world *one = load(path);
-        if (skein_particle_count(one) > (SANITIZED ? 1000u : 20000u)) {
+        if (skein_particle_count(one) > (SPARING ? 1000u : 20000u)) {
             skein_world_destroy(one);
             continue;
         }
@@ -228,7 +228,7 @@ static void every_scene(void **state) {
         count++;
     }
     closedir(folder);
-    assert_true(count > (SANITIZED ? 5 : 20));
+    assert_true(count > (SPARING ? 5 : 20));
 }
 
 /* ---- colliders whose vertices a program leads ---- */
@@ -331,7 +331,7 @@ static void surfaces_that_are_damaged(void **state) {
     const size_t surface = 4 + 4 + 8 + 8 + 8 * 3 * sizeof(skein_real) + 8 * 3 * 8;
     size_t refused = 0;
     for (size_t i = s.size - surface; i < s.size; i++)
-        for (int bit = 0; bit < 8; bit += 1 + 6 * SANITIZED) {
+        for (int bit = 0; bit < 8; bit += 1 + 6 * SPARING) {
             s.bytes[i] ^= (unsigned char)(1u << bit);
             sk_snapshot_seal(s.bytes, s.size);
             refused += skein_snapshot_read(world, s.bytes, s.size) != SKEIN_OK;

@@ -4,7 +4,7 @@
 #include "helpers.h"
 
 enum { SIDE = 142, LOOSE = 400 };
-#if SANITIZED // a hundred times as slow: one count is as good as another
+#if SPARING // a hundred times as slow: one count is as good as another
 static const int some_counts[] = {3};
 enum { STEPS = 1, SHORT_SUBSTEPS = 8, TURNS = 6 };
 #else

@@ -2,7 +2,7 @@
  * bits are the same for any number of threads, and for tasks in any order. */
 #include "helpers.h"
 
-enum { SIDE = SANITIZED ? 26 : 36, STEPS = SANITIZED ? 3 : 24 };
+enum { SIDE = SPARING ? 26 : 36, STEPS = SPARING ? 3 : 24 };
 
 typedef struct tally {
     size_t calls;
@@ -44,7 +44,7 @@ static void threads_change_no_bit(void **state) {
     setenv("SKEIN_THREADS", "always", 1);
     for (int through = 0; through < 2; through++) {
         uint64_t ought = hash_of_run(1, NULL, through);
-        for (int threads = 2; threads <= (SANITIZED ? 2 : 3); threads++)
+        for (int threads = 2; threads <= (SPARING ? 2 : 3); threads++)
             assert_true(hash_of_run(threads, NULL, through) == ought);
         tally t = {0};
         assert_true(hash_of_run(4, &t, through) == ought);

@@ -4,7 +4,7 @@
 #include "helpers.h"
 #include "world/world.h"
 
-#if SANITIZED
+#if SPARING
 enum { SUBSTEPS = 9, STEPS = 1 }; // with fewer, no thread runs ahead into the next, and a race would not show
 #else
 enum { SUBSTEPS = 34, STEPS = 3 };
@@ -95,7 +95,7 @@ static uint64_t hash_of_run(const char *method, body which, bool contact, int th
 
 static void walks_do_not_depend_on_threads(void **state) {
     (void)state;
-#if SANITIZED // which takes a hundred times as long: one count is as good as another
+#if SPARING // which takes a hundred times as long: one count is as good as another
     static const int counts[] = {2};
 #else
     static const int counts[] = {2, 3, 5, 8};

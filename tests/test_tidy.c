@@ -81,7 +81,7 @@ static void a_flock_that_moves_in_memory_flies_the_same(void **state) {
         size_t count = skein_particle_count(still);
         double *middle = malloc(3 * count * sizeof *middle), *other = malloc(3 * count * sizeof *other);
         OK(still, skein_positions_blend(still, 0.5, 0, count, middle));
-        for (int threads = SANITIZED ? 3 : 1; threads < 4; threads++) {
+        for (int threads = SPARING ? 3 : 1; threads < 4; threads++) {
             skein_world *world = flocks(threads, overlapping, false, NULL);
             assert_true(fly(world) == hash);
             assert_true(moved(world) > BIRDS / 2);

@@ -106,7 +106,7 @@ static skein_world *new_heap(int side, double tilt, int threads) {
 
 static void a_heap_has_no_crossings(void **state) {
     (void)state;
-    const int side = SANITIZED ? 10 : 18, frames = SANITIZED ? 20 : 60;
+    const int side = SPARING ? 10 : 18, frames = SPARING ? 20 : 60;
     size_t without = 0;
     for (int touching = 0; touching < 2; touching++) {
         skein_world *world = new_heap(side, 4, 1);
@@ -125,11 +125,11 @@ static void a_heap_has_no_crossings(void **state) {
         skein_statistics s = statistics_of(world);
         assert_int_equal(s.crossings, 0);
         assert_int_equal(s.nonfinite, 0);
-        if (touching && !SANITIZED) assert_under(s.p99_stretch, 0.05);
+        if (touching && !SPARING) assert_under(s.p99_stretch, 0.05);
         free(all.corner);
         skein_world_destroy(world);
     }
-    if (!SANITIZED) assert_true(without > 20); // or the scene would prove nothing
+    if (!SPARING) assert_true(without > 20); // or the scene would prove nothing
 }
 
 /* What falls takes nobody along into what others lie on: while planes between surfaces went along with the mean of all, folds of
@@ -151,10 +151,10 @@ static void nobody_is_pressed_into_the_ground(void **state) {
                                   SKEIN_SETTINGS(SKEIN_VEC3("normal", ground == 1 ? 0.4 : 0, 1, 0),
                                                  SKEIN_VEC3("motion.velocity", 0, up, 0), SKEIN_REAL("friction", 0.5)),
                                   NULL));
-        add_sheet(world, SANITIZED ? 14 : 24, 0.6, (vec3){0, 0.5, 0}, (vec3){86, 10, 0});
+        add_sheet(world, SPARING ? 14 : 24, 0.6, (vec3){0, 0.5, 0}, (vec3){86, 10, 0});
         add_touching(world, 0.005, 0.3);
         double deepest = 0;
-        for (int step = 0; step < (SANITIZED ? 30 : 70); step++) {
+        for (int step = 0; step < (SPARING ? 30 : 70); step++) {
             steps(world, 1, step_length);
             deepest = fmax(deepest, statistics_of(world).max_penetration);
         }
@@ -169,7 +169,7 @@ static void nobody_is_pressed_into_the_ground(void **state) {
  * went to and fro between the two kinds of substeps for ever, at 2 cm/s here and 3 in a sheet of 100 x 100. */
 static void a_heap_comes_to_rest(void **state) {
     (void)state;
-    if (SANITIZED) skip();
+    if (SPARING) skip();
     skein_world *world = new_heap(40, 4, 1);
     add_touching(world, 0.004, 0.3);
     steps(world, 420, step_length); // in double a fold falls over after 3 s
@@ -187,11 +187,11 @@ static void a_thin_heap_has_no_crossings(void **state) {
         int side;
         double thickness, tilt;
     } heaps[] = {{20, 0.002, 4}, {16, 0.004, 4}};
-    for (size_t h = 0; h < (SANITIZED ? 1 : COUNT(heaps)); h++) {
+    for (size_t h = 0; h < (SPARING ? 1 : COUNT(heaps)); h++) {
         skein_world *world = new_heap(heaps[h].side, heaps[h].tilt, 1);
         triangles all = triangles_of(world);
         add_touching(world, heaps[h].thickness, 0.3);
-        for (int frame = 0; frame < (SANITIZED ? 20 : 50); frame++) {
+        for (int frame = 0; frame < (SPARING ? 20 : 50); frame++) {
             steps(world, 1, step_length);
             if (frame % 2) continue;
             assert_int_equal(crossings_of(world, &all), 0);
@@ -230,12 +230,12 @@ static void layers_stay_in_their_order(void **state) {
     for (int l = 0; l < LAYERS; l++)
         add_sheet(world, SIDE, 0.6, (vec3){0.01 * l, 0.1 + 0.1 * l, 0}, (vec3){0, 7.0 * l, 0});
     triangles all = triangles_of(world);
-    for (int frame = 0; frame < (SANITIZED ? 15 : 90); frame++) {
+    for (int frame = 0; frame < (SPARING ? 15 : 90); frame++) {
         steps(world, 1, step_length);
         assert_int_equal(crossings_of(world, &all), 0);
     }
     double below = 0;
-    for (int l = 0; l < LAYERS && !SANITIZED; l++) {
+    for (int l = 0; l < LAYERS && !SPARING; l++) {
         double mean = 0;
         for (int i = 0; i < SIDE * SIDE; i++)
             mean += position_of(world, (size_t)(l * SIDE * SIDE + i)).y / (SIDE * SIDE);
@@ -275,11 +275,11 @@ static void a_cube_rests_on_a_cube(void **state) {
         add_cube(world, (vec3){0.06, 0.9, 0.04}, 25);
         add_touching(world, 0.01, 0.4);
         triangles all = triangles_of(world);
-        for (int frame = 0; frame < (SANITIZED ? 8 : 120); frame++) {
+        for (int frame = 0; frame < (SPARING ? 8 : 120); frame++) {
             steps(world, 1, step_length);
             if (frame % 4 == 0) assert_int_equal(crossings_of(world, &all), 0);
         }
-        if (!SANITIZED) {
+        if (!SPARING) {
             double lower = mean_height(world, 0, 125), upper = mean_height(world, 125, 125);
             fprintf(stderr, "%s: %.3f %.3f\n", methods[m], lower, upper);
             assert_near(upper - lower, 0.5, 0.06);
@@ -302,7 +302,7 @@ static void a_rope_lies_on_a_cloth(void **state) {
                              SKEIN_SETTINGS(SKEIN_REAL("count", 21), SKEIN_VEC3("from", -0.3, 0.1, -0.1),
                                             SKEIN_VEC3("to", 0.3, 0.14, 0.13), SKEIN_REAL("density", 0.05)),
                              NULL));
-    steps(world, SANITIZED ? 10 : 120, step_length);
+    steps(world, SPARING ? 10 : 120, step_length);
     for (size_t i = 169; i < 190; i++) assert_true(position_of(world, i).y > -0.2); // the sheet sags a little
     assert_true(mean_height(world, 169, 21) > mean_height(world, 0, 169));
     skein_world_destroy(world);
@@ -318,7 +318,7 @@ static void bits_are_the_same(void **state) {
             if (sets[i][0]) setenv("SKEIN_SIMD", sets[i], 1);
             skein_world *world = new_heap(14, 3, threads);
             add_touching(world, 0.01, 0.3);
-            steps(world, SANITIZED ? 5 : 32, step_length);
+            steps(world, SPARING ? 5 : 32, step_length);
             if (!ought) ought = skein_world_hash(world);
             assert_true(skein_world_hash(world) == ought);
             skein_world_destroy(world);
@@ -329,7 +329,7 @@ static void bits_are_the_same(void **state) {
 /* Pairs are kept from step to step; a world that begins in the midst, or looks in between, goes on with the same bits. */
 static void it_remembers_nothing(void **state) {
     (void)state;
-    const int frames = SANITIZED ? 4 : 36;
+    const int frames = SPARING ? 4 : 36;
     skein_world *one = new_heap(14, 3, 1), *two = new_heap(14, 3, 1);
     add_touching(one, 0.01, 0.3);
     add_touching(two, 0.01, 0.3);
@@ -357,7 +357,7 @@ static void it_remembers_nothing(void **state) {
 static void an_impact_remembers_nothing(void **state) {
     (void)state;
     enum { FRAMES = 36, FIRST = 12, BEHIND = 5 };
-    if (SANITIZED) skip();
+    if (SPARING) skip();
     skein_world *one = new_heap(24, 3, 1), *two = new_heap(24, 3, 1);
     add_touching(one, 0.012, 0.3);
     add_touching(two, 0.012, 0.3);

@@ -52,6 +52,7 @@ static void sheets_leave_solids(void **state) {
     enum { PAIRS = 16 };
     int stay = 0;
     for (int number = 0; number < PAIRS; number++) {
+        if (is_spared((size_t)number, 5)) continue;
         skein_world *world = begin_world(number, number % 2);
         const int side = (int)some(3, 9), threads = (int)some(10, 30);
         const double x = some(-0.1, 0.1), y = 0.5 + some(-0.1, 0.1), pitch = some(-60, 60), yaw = some(-60, 60),
@@ -73,6 +74,7 @@ static void sheets_leave_each_other(void **state) {
     enum { PAIRS = 24 };
     int stay = 0;
     for (int number = 0; number < PAIRS; number++) {
+        if (is_spared((size_t)number, 5)) continue;
         skein_world *world = begin_world(number, number % 2);
         const int first = (int)some(8, 30), second = (int)some(8, 30);
         add_sheet(world, first, some(0.5, 1), 0.1, "");
@@ -100,14 +102,15 @@ static void sheets_that_move_leave_each_other(void **state) {
     enum { PAIRS = 36 };
     int begun = 0, stay = 0;
     for (int number = 0; number < PAIRS; number++) {
+        if (is_spared((size_t)number, 5)) continue;
         skein_world *world = begin_world(number, true);
         add_thrown(world, 45, 29, 0.7, "wool");
         add_thrown(world, 24, 24, 0.6, "silk");
         if (!crossings_of(world)) skein_world_destroy(world);
         else begun++, stay += !come_apart(world, number, true, 0);
     }
-    if (begun < 10 || stay > 2) fprintf(stderr, "%d of %d stay\n", stay, begun);
-    assert_true(begun >= 10);
+    if ((!SPARING && begun < 10) || stay > 2) fprintf(stderr, "%d of %d stay\n", stay, begun);
+    assert_true(begun >= (SPARING ? 1 : 10));
     assert_true(stay <= 2); // one at most today, in both precisions; it was six
 }
 
