@@ -19,17 +19,18 @@ static double seconds_now(void) {
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec;
 }
 
-static skein_world *sheet(int side, bool touching, double tilt, const char *pins, int threads) {
+static skein_world *sheet(int side, bool touching, double tilt, const char *pins, int threads, double sleep) {
     skein_world *world = bench_world(threads);
     bench_need(world, skein_method_set(world, "xpbd", SKEIN_SETTINGS(SKEIN_REAL("substeps", 10))));
     bench_need(world, skein_force_add(world, "gravity", NULL, NULL));
     bench_need(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 0.3)), NULL));
     bench_need(world, skein_collider_add(world, "plane", SKEIN_SETTINGS(SKEIN_REAL("friction", 0.5)), NULL));
-    bench_need(world, skein_body_add(world, "cloth", NULL,
-                                     SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins),
-                                                    SKEIN_VEC3("position", 0, pins[0] ? 2 : 0.55, 0),
-                                                    SKEIN_VEC3("rotation", 90 - tilt, 10, 0)),
-                                     NULL));
+    bench_need(world,
+               skein_body_add(world, "cloth", NULL,
+                              SKEIN_SETTINGS(SKEIN_PAIR("grid", side, side), SKEIN_TEXT("pins", pins),
+                                             SKEIN_VEC3("position", 0, pins[0] ? 2 : 0.55, 0),
+                                             SKEIN_VEC3("rotation", 90 - tilt, 10, 0), SKEIN_REAL("sleep", sleep)),
+                              NULL));
     if (touching)
         bench_need(world, skein_force_add(world, "contact", SKEIN_SETTINGS(SKEIN_REAL("thickness", 0.004)), NULL));
     return world;
@@ -52,42 +53,45 @@ static void report_threads(const char *name, const char *size, const double seco
                                  .note = "frame by frame in turns"});
 }
 
-/* Each frame is timed alone: the worst one is the impact. A second world takes two threads. */
+/* Each frame is timed alone: the worst one is the impact. A second world takes two threads, and a third one may fall asleep. */
 static void heap(int side, double tilt) {
+    enum { ALONE, TWO_THREADS, SLEEPS, WORLDS };
     char size[40];
     snprintf(size, sizeof size, "%d x %d, %g deg", side, side, tilt);
     const int frames = bench_quick ? 10 : 600, last = bench_quick ? 5 : 60; // those at rest
-    skein_world *world[2];
-    for (int t = 0; t < 2; t++) world[t] = sheet(side, true, tilt, "", 1 + t);
-    double sum[2] = {0, 0}, rest[2] = {0, 0}, worst = 0;
+    skein_world *world[WORLDS];
+    for (int w = 0; w < WORLDS; w++)
+        world[w] = sheet(side, true, tilt, "", w == TWO_THREADS ? 2 : 1, w == SLEEPS ? 0.02 : 0);
+    double sum[WORLDS] = {0}, rest[WORLDS] = {0}, worst = 0;
     uint64_t crossings = 0;
-    for (int i = 0; i < frames; i++) {
-        for (int t = 0; t < 2; t++) {
-            const double seconds = seconds_of_step(world[t]);
-            sum[t] += seconds / frames;
-            if (i >= frames - last) rest[t] += seconds / last;
-            if (!t && seconds > worst) worst = seconds;
+    for (int i = 0; i < frames; i++)
+        for (int w = 0; w < WORLDS; w++) {
+            const double seconds = seconds_of_step(world[w]);
+            sum[w] += seconds / frames;
+            if (i >= frames - last) rest[w] += seconds / last;
+            if (w == ALONE && seconds > worst) worst = seconds;
+            skein_statistics s;
+            bench_need(world[w], skein_world_statistics(world[w], &s));
+            crossings += s.crossings;
         }
-        skein_statistics s;
-        bench_need(world[0], skein_world_statistics(world[0], &s));
-        crossings += s.crossings;
-    }
-    if (skein_world_hash(world[0]) != skein_world_hash(world[1]))
+    if (skein_world_hash(world[ALONE]) != skein_world_hash(world[TWO_THREADS]))
         bench_fault("heap, %s: two threads have other bits", size);
     report("heap, crossings", size, (double)crossings, "in all", 1);
-    report("heap, mean", size, 1e3 * sum[0], "ms/frame", 25);
+    report("heap, mean", size, 1e3 * sum[ALONE], "ms/frame", 25);
     report("heap, worst", size, 1e3 * worst, "ms/frame", 100);
-    report("heap, at rest", size, 1e3 * rest[0], "ms/frame", 16.7);
+    report("heap, at rest", size, 1e3 * rest[ALONE], "ms/frame", 16.7);
+    report("heap that may sleep, mean", size, 1e3 * sum[SLEEPS], "ms/frame", 25);
+    report("heap that may sleep, at rest", size, 1e3 * rest[SLEEPS], "ms/frame", 16.7);
     report_threads("heap, two threads", size, sum);
     report_threads("heap at rest, two threads", size, rest);
-    for (int t = 0; t < 2; t++) skein_world_destroy(world[t]);
+    for (int w = 0; w < WORLDS; w++) skein_world_destroy(world[w]);
 }
 
 /* A sheet that hangs still: pairs are kept, and each substep looks whether they may be. */
 static void nothing_touches(int side) {
     char size[40];
     snprintf(size, sizeof size, "%d x %d", side, side);
-    skein_world *touching = sheet(side, true, 0, "top edge", 1), *free = sheet(side, false, 0, "top edge", 1);
+    skein_world *touching = sheet(side, true, 0, "top edge", 1, 0), *free = sheet(side, false, 0, "top edge", 1, 0);
     for (int i = 0; i < (bench_quick ? 5 : 300); i++) bench_step(touching), bench_step(free);
     bench_job jobs[] = {{.run = bench_step, .data = touching}, {.run = bench_step, .data = free}};
     double seconds[2];
@@ -111,7 +115,7 @@ static void swings(int side) {
     const int frames = bench_quick ? 5 : 60;
     double seconds[2] = {0, 0};
     for (int touching = 0; touching < 2; touching++) {
-        skein_world *world = sheet(side, touching, 90, "top corners", 1);
+        skein_world *world = sheet(side, touching, 90, "top corners", 1, 0);
         double start = seconds_now();
         for (int i = 0; i < frames; i++) bench_step(world);
         seconds[touching] = (seconds_now() - start) / frames;

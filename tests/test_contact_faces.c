@@ -155,7 +155,7 @@ static void boxes_do_not_stand_out_of_cloth(void **state) {
         {"field", "xpbd", "none", 25, 10, false, {10, 17, 6}, 30},
     };
     for (size_t c = 0; c < COUNT(cases); c++) {
-        if (!PLAIN && c % 4 != 1) continue;
+        if (!PLAIN && c % (SPARING ? 4 : 8) != 1) continue; // (a solve in double takes a minute)
         skein_world *world = new_contact_world(cases[c].method, cases[c].substeps);
         shape s = {.halves = {half, half, half}, .centre = {0, 0.5, 0}};
         turn_shape(&s, cases[c].turn);
