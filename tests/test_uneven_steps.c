@@ -47,6 +47,7 @@ static void what_hangs_still_stays_so(void **state) {
     for (size_t m = 0; m < COUNT(methods); m++)
         for (int irregular = 0; irregular < 2; irregular++)
             for (size_t f = 0; f < COUNT(frames); f++) {
+                if (is_spared((2 * m + (size_t)irregular) * COUNT(frames) + f, 4)) continue;
                 skein_world *world = hang(methods[m], irregular, m == 0 && irregular == 0);
                 uint64_t seed = 5;
                 for (int frame = 0; frame < 200; frame++) {
