@@ -53,38 +53,51 @@ static void report_threads(const char *name, const char *size, const double seco
                                  .note = "frame by frame in turns"});
 }
 
-/* Each frame is timed alone: the worst one is the impact. A second world takes two threads, and a third one may fall asleep. */
+/* One that may fall asleep. */
+static void heap_that_sleeps(int side, double tilt, const char *size) {
+    const int frames = bench_quick ? 10 : 600, last = bench_quick ? 5 : 60;
+    skein_world *world = sheet(side, true, tilt, "", 1, 0.02);
+    double sum = 0, rest = 0;
+    for (int i = 0; i < frames; i++) {
+        const double seconds = seconds_of_step(world);
+        sum += seconds / frames;
+        if (i >= frames - last) rest += seconds / last;
+    }
+    report("heap that may sleep, mean", size, 1e3 * sum, "ms/frame", 25);
+    report("heap that may sleep, at rest", size, 1e3 * rest, "ms/frame", 16.7);
+    skein_world_destroy(world);
+}
+
+/* Each frame is timed alone: the worst one is the impact. A second world takes two threads. */
 static void heap(int side, double tilt) {
-    enum { ALONE, TWO_THREADS, SLEEPS, WORLDS };
     char size[40];
     snprintf(size, sizeof size, "%d x %d, %g deg", side, side, tilt);
     const int frames = bench_quick ? 10 : 600, last = bench_quick ? 5 : 60; // those at rest
-    skein_world *world[WORLDS];
-    for (int w = 0; w < WORLDS; w++)
-        world[w] = sheet(side, true, tilt, "", w == TWO_THREADS ? 2 : 1, w == SLEEPS ? 0.02 : 0);
-    double sum[WORLDS] = {0}, rest[WORLDS] = {0}, worst = 0;
+    skein_world *world[2];
+    for (int t = 0; t < 2; t++) world[t] = sheet(side, true, tilt, "", 1 + t, 0);
+    double sum[2] = {0, 0}, rest[2] = {0, 0}, worst = 0;
     uint64_t crossings = 0;
-    for (int i = 0; i < frames; i++)
-        for (int w = 0; w < WORLDS; w++) {
-            const double seconds = seconds_of_step(world[w]);
-            sum[w] += seconds / frames;
-            if (i >= frames - last) rest[w] += seconds / last;
-            if (w == ALONE && seconds > worst) worst = seconds;
-            skein_statistics s;
-            bench_need(world[w], skein_world_statistics(world[w], &s));
-            crossings += s.crossings;
+    for (int i = 0; i < frames; i++) {
+        for (int t = 0; t < 2; t++) {
+            const double seconds = seconds_of_step(world[t]);
+            sum[t] += seconds / frames;
+            if (i >= frames - last) rest[t] += seconds / last;
+            if (!t && seconds > worst) worst = seconds;
         }
-    if (skein_world_hash(world[ALONE]) != skein_world_hash(world[TWO_THREADS]))
+        skein_statistics s;
+        bench_need(world[0], skein_world_statistics(world[0], &s));
+        crossings += s.crossings;
+    }
+    if (skein_world_hash(world[0]) != skein_world_hash(world[1]))
         bench_fault("heap, %s: two threads have other bits", size);
     report("heap, crossings", size, (double)crossings, "in all", 1);
-    report("heap, mean", size, 1e3 * sum[ALONE], "ms/frame", 25);
+    report("heap, mean", size, 1e3 * sum[0], "ms/frame", 25);
     report("heap, worst", size, 1e3 * worst, "ms/frame", 100);
-    report("heap, at rest", size, 1e3 * rest[ALONE], "ms/frame", 16.7);
-    report("heap that may sleep, mean", size, 1e3 * sum[SLEEPS], "ms/frame", 25);
-    report("heap that may sleep, at rest", size, 1e3 * rest[SLEEPS], "ms/frame", 16.7);
+    report("heap, at rest", size, 1e3 * rest[0], "ms/frame", 16.7);
     report_threads("heap, two threads", size, sum);
     report_threads("heap at rest, two threads", size, rest);
-    for (int w = 0; w < WORLDS; w++) skein_world_destroy(world[w]);
+    for (int t = 0; t < 2; t++) skein_world_destroy(world[t]);
+    heap_that_sleeps(side, tilt, size);
 }
 
 /* A sheet that hangs still: pairs are kept, and each substep looks whether they may be. */
