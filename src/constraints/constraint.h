@@ -106,18 +106,17 @@ struct sk_batch {
     void *params; /* the type's, an sk_material first; owned by whoever owns the batch */
     const char *label;
     const bool *enabled;
-    const double *bound; /* on the relative violation, enforced by limit ops; NULL: none */
-    const double *
-        tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing limits them,
-                           * those that only too few sweeps can have left stretched are taken back (world/strained.c); NULL: never */
-    bool strained;     /* when the present step began some were near their bound, or beyond it */
-    bool only_bounds;  /* it only bounds: it does not pull, and is not counted */
-    double quickness;  /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
+    const double *bound;  /* on the relative violation, enforced by limit ops; NULL: none */
+    const double *tether; /* of a sheet's edges: how much its tethers let it stretch. While that is finite, and nothing
+                           * limits them, those that only too few sweeps can have left stretched are taken back
+                           * (world/strained.c); NULL: never */
+    bool strained;        /* when the present step began some were near their bound, or beyond it */
+    bool only_bounds;     /* it only bounds: it does not pull, and is not counted */
+    double quickness;     /* 1/s2 for a stiffness of 1: an element's largest sum of w |grad C|^2, times its scale: the
                             square of its angular frequency. If low for the substep, position methods may project the
                             batch in every second one, with the same stiffness; 0: in every one */
-    sk_coarse *coarse; /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
-    sk_aggregate
-        *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded; or NULL */
+    sk_coarse *coarse;    /* its particles are those of a coarse grid (constraints/coarse.h), only bounded; or NULL */
+    sk_aggregate *aggregate; /* its particles are hubs, which carry others (constraints/aggregate.h), only bounded */
     uint32_t most_edges; /* of one that only bounds: so many edges of its body's surface lead from end to end of an element
                             at most; 0: that was not looked for yet (world/severed.c) */
     bool measured;       /* an edge of a body: it counts in the stretch of the statistics */

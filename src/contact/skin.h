@@ -39,9 +39,8 @@ typedef struct sk_skin {
 /* Bodies of which some pairs do not meet (make/ignored.c). */
 typedef struct sk_ignored {
     bool any;
-    uint32_t *
-        of_leaf; /* of leaves: the number that their body has, and whoever is called the same by the text; 0: it is not named */
-    uint8_t *pair; /* width x width: whether bodies of these numbers do not meet */
+    uint32_t *of_leaf; /* of leaves: a number of their body, and of whoever the text calls the same; 0: of none */
+    uint8_t *pair;     /* width x width: whether bodies of these numbers do not meet */
     size_t width;
 } sk_ignored;
 

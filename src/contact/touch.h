@@ -118,11 +118,10 @@ typedef struct sk_touch {
     sk_vec3 frame_step;       /* how far the frame of courses goes in a substep, as it did last, */
     sk_vec3 shift[2];         /* and has gone before this one and after it */
     /* by slot */
-    const sk_vec4 *x; /* while a substep is taken */
-    const sk_vec4 *
-        before; /* X before the substep, as it was laid out: `copied`, or, while nobody asks, what the method keeps; or NULL */
-    sk_vec4 *copied;    /* a copy of it */
-    bool start_is_kept; /* the method keeps it until the bound */
+    const sk_vec4 *x;      /* while a substep is taken */
+    const sk_vec4 *before; /* X before the substep: `copied`, or, while nobody asks, what the method keeps; or NULL */
+    sk_vec4 *copied;       /* a copy of it */
+    bool start_is_kept;    /* the method keeps it until the bound */
     sk_course_block *course_block;
     uint16_t *off;
     uint32_t *vertex_at;
