@@ -43,8 +43,8 @@ typedef struct meeting {
     bool *loaded;
     const sk_collider *collider;
     sk_pose pose, start;
-    real h, thickness, reach,
-        far; /* s, m; what is farther off than the reach touches in no substep, nor with all of its edges who is as far */
+    real h, thickness; /* s, m */
+    real reach, far; /* m: what is farther off touches in no substep; and who is farther off, with none of its edges */
 } meeting;
 
 static void probe(const meeting *m, const sk_pose *pose, const sk_vec3 *place, size_t count, real reach,

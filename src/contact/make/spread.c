@@ -101,8 +101,8 @@ static void free_lanes(sk_spread *spread) {
     for (size_t p = spread->count; p % SK_PANEL_LANES; p++)
         for (int n = 0; n < 6; n++) {
             sk_tree_block *course = &spread->sixteen[p / SK_PANEL_LANES].course;
-            course->low[n / 3][n % 3][p % SK_PANEL_LANES] = -SK_REAL_MAX,
-                                          course->high[n / 3][n % 3][p % SK_PANEL_LANES] = SK_REAL_MAX;
+            course->low[n / 3][n % 3][p % SK_PANEL_LANES] = -SK_REAL_MAX;
+            course->high[n / 3][n % 3][p % SK_PANEL_LANES] = SK_REAL_MAX;
         }
 }
 
