@@ -50,8 +50,9 @@ void bench_ops_destroy(bench_ops *ops) {
     free(ops);
 }
 
-static void run(bench_ops *ops, const sk_op *first, size_t count) {
+static void run(bench_ops *ops, const sk_op *first, size_t count, size_t iteration) {
     sk_run context = sk_world_run_context(ops->world);
+    context.iteration = iteration;
     uint64_t mode = sk_float_mode_enter();
     sk_run_ops(&context, ops->world->tasks, first, count);
     sk_float_mode_leave(mode);
@@ -59,12 +60,12 @@ static void run(bench_ops *ops, const sk_op *first, size_t count) {
 
 void bench_ops_run(void *data) {
     bench_ops *ops = data;
-    run(ops, ops->ops, ops->count);
+    run(ops, ops->ops, ops->count, 0);
 }
 
 void bench_ops_run_once(void *data) {
     bench_ops *ops = data;
-    run(ops, ops->ops + 1, ops->count - 1);
+    run(ops, ops->ops + 1, ops->count - 1, 1);
 }
 
 size_t bench_ops_iterations(const bench_ops *ops) {

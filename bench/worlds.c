@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "constraints/sweep.h"
 #include "world/world.h"
 
 void bench_need(skein_world *world, skein_status status) {
@@ -88,7 +89,7 @@ void bench_steps(skein_world *world, int count) {
 
 /* Springs, which others have too; not what a body may have besides. */
 static size_t spring_count(const sk_batch *batch) {
-    return batch->type->arity == 2 ? batch->count : 0;
+    return batch->type->arity == 2 && !batch->only_bounds ? batch->count : 0;
 }
 
 size_t bench_spring_count(const skein_world *world) {
@@ -160,24 +161,6 @@ uint32_t *bench_pairs(const skein_world *world) {
     return pairs;
 }
 
-/* An element and the lane of Skein's sweeps that it is in: lanes are walked in their order. */
-typedef struct walked {
-    uint32_t lane, element;
-} walked;
-
-static int compare_walked(const void *a, const void *b) {
-    uint32_t x = ((const walked *)a)->lane, y = ((const walked *)b)->lane;
-    return (x > y) - (x < y);
-}
-
-static walked *order_elements(const sk_batch *batch, bench_order order) {
-    walked *elements = bench_allocate(batch->count, sizeof *elements);
-    for (uint32_t e = 0; e < batch->count; e++)
-        elements[e] = (walked){order == BENCH_AS_WALKED ? batch->lane[e] : e, e};
-    qsort(elements, batch->count, sizeof *elements, compare_walked);
-    return elements;
-}
-
 static void copy_particles(plain_system *system, const skein_world *world, const uint32_t *place_of) {
     skein_view x = skein_position_view(world), v = skein_velocity_view(world);
     for (size_t i = 0; i < x.count; i++) {
@@ -188,39 +171,90 @@ static void copy_particles(plain_system *system, const skein_world *world, const
     }
 }
 
-/* Springs as `listing` has them; each particle of `world` at the place that `place_of` says. */
-static plain_system *make_plain(const skein_world *world, const skein_world *listing, bench_order order,
-                                const uint32_t *place_of, size_t places, double h) {
-    plain_system *system = plain_create(places, bench_spring_count(listing));
-    if (!system) bench_stop("no memory for the plain loop");
-    copy_particles(system, world, place_of);
-    system->per_step = (float)(1 / (h * h));
-    plain_spring *spring = system->springs;
-    for (size_t b = 0; b < listing->rules.batches.count; b++) {
-        const sk_batch *batch = listing->rules.batches.data[b];
-        const sk_material *material = batch->params;
-        walked *elements = order_elements(batch, order);
-        for (size_t i = 0; i < spring_count(batch); i++, spring++) {
-            size_t e = elements[i].element;
-            uint32_t p = batch->particle[2 * e], q = batch->particle[2 * e + 1];
-            double scale = batch->scale ? (double)batch->scale[e] : 1;
-            spring->a = (int)(place_of ? place_of[p] : p), spring->b = (int)(place_of ? place_of[q] : q);
-            spring->rest = (float)batch->rest[e];
-            spring->stiffness = (float)(material->stiffness * scale);
-            spring->compliance = 1 / spring->stiffness;
-            spring->damping = (float)(material->damping * scale);
-        }
-        free(elements);
+static void put_spring(plain_system *system, const sk_batch *batch, size_t e, double share, const uint32_t *place_of) {
+    const sk_material *material = batch->params;
+    uint32_t p = batch->particle[2 * e], q = batch->particle[2 * e + 1];
+    double scale = batch->scale ? (double)batch->scale[e] : 1;
+    plain_spring *spring = &system->springs[system->spring_count++];
+    *spring = (plain_spring){.a = (int)(place_of ? place_of[p] : p),
+                             .b = (int)(place_of ? place_of[q] : q),
+                             .rest = (float)batch->rest[e],
+                             .stiffness = (float)(material->stiffness * scale),
+                             .damping = (float)(material->damping * scale)};
+    spring->compliance = (float)share / spring->stiffness;
+}
+
+static void put_as_listed(plain_system *system, const skein_world *world, const uint32_t *place_of) {
+    for (size_t b = 0; b < world->rules.batches.count; b++) {
+        const sk_batch *batch = world->rules.batches.data[b];
+        for (size_t e = 0; e < spring_count(batch); e++) put_spring(system, batch, e, 1, place_of);
     }
-    return system;
+}
+
+/* What an op projects, lane by lane. */
+static void put_as_swept(plain_system *system, const sk_op *op, const uint32_t *place_of) {
+    const sk_sweep *sweep = op->rule;
+    const sk_batch *batch = sweep->batch;
+    size_t count = spring_count(batch) ? sk_sweep_lane_count(sweep) : 0;
+    uint32_t *element = bench_allocate(count, sizeof *element); // and one, so that 0 is none
+    for (size_t e = 0; e < spring_count(batch); e++)
+        if (batch->lane[e] - sweep->first_lane < count) element[batch->lane[e] - sweep->first_lane] = (uint32_t)e + 1;
+    for (size_t lane = 0; lane < count; lane++)
+        if (element[lane] && sk_sweep_half_has(sweep, op->half, lane))
+            put_spring(system, batch, element[lane] - 1, op->coefficient[0], place_of);
+    free(element);
+}
+
+static void put_as_walked(plain_system *system, const skein_world *world, const uint32_t *place_of) {
+    for (size_t r = 0; r < world->plan.count; r++)
+        if (world->plan.data[r].kind == SK_OP_PROJECT) put_as_swept(system, &world->plan.data[r], place_of);
 }
 
 plain_system *bench_plain(const skein_world *world, bench_order order, bool as_they_lie, double h) {
-    const uint32_t *place_of = as_they_lie ? world->particles.slot_of : NULL;
     size_t places = as_they_lie ? world->particles.slot_count : world->particles.count;
-    return make_plain(world, world, order, place_of, places, h);
+    const uint32_t *place_of = as_they_lie ? world->particles.slot_of : NULL;
+    plain_system *system = plain_create(places, bench_spring_count(world));
+    if (!system) bench_stop("no memory for the plain loop");
+    copy_particles(system, world, place_of);
+    system->per_step = (float)(1 / (h * h));
+    system->spring_count = 0;
+    (order == BENCH_AS_WALKED ? put_as_walked : put_as_listed)(system, world, place_of);
+    if (system->spring_count != bench_spring_count(world))
+        bench_stop("%zu springs are swept of %zu", system->spring_count, bench_spring_count(world));
+    return system;
 }
 
-plain_system *bench_plain_listed_by(const skein_world *world, const skein_world *listing, double h) {
-    return make_plain(world, listing, BENCH_AS_LISTED, NULL, world->particles.count, h);
+/* A spring, and when a reader of the file has met both its ends, or one of them. */
+typedef struct filed_spring {
+    size_t both, one;
+    plain_spring spring;
+} filed_spring;
+
+static int compare_filed(const void *a, const void *b) {
+    const filed_spring *x = a, *y = b;
+    return x->both != y->both ? (x->both > y->both) - (x->both < y->both) : (x->one > y->one) - (x->one < y->one);
+}
+
+static void sort_as_filed(plain_spring *springs, size_t count, const size_t *met) {
+    filed_spring *filed = bench_allocate(count, sizeof *filed);
+    for (size_t s = 0; s < count; s++) {
+        size_t a = met[springs[s].a], b = met[springs[s].b];
+        filed[s] = (filed_spring){a > b ? a : b, a > b ? b : a, springs[s]};
+    }
+    qsort(filed, count, sizeof *filed, compare_filed);
+    for (size_t s = 0; s < count; s++) springs[s] = filed[s].spring;
+    free(filed);
+}
+
+plain_system *bench_plain_as_filed(const skein_world *world, const skein_mesh *mesh, double h) {
+    plain_system *system = bench_plain(world, BENCH_AS_LISTED, false, h);
+    size_t *met = bench_allocate(mesh->vertex_count, sizeof *met), first = 0;
+    for (size_t c = mesh->face_vertex_count; c-- > 0;) met[mesh->face_vertices[c]] = c;
+    for (size_t b = 0; b < world->rules.batches.count; b++) {
+        size_t count = spring_count(world->rules.batches.data[b]);
+        sort_as_filed(system->springs + first, count, met);
+        first += count;
+    }
+    free(met);
+    return system;
 }

@@ -45,13 +45,14 @@ bench_stretch bench_stretch_now(const skein_world *world);
 /* All springs of the world in its own order, each as the user's two particles; `pairs` is freed by the caller. */
 uint32_t *bench_pairs(const skein_world *world);
 /* The student's springs of a world, in its present state. Their order is
- *   as listed   direction by direction and row by row on grids, outward on pinned meshes, else the file's
- *   as walked   exactly as Skein's sweeps go: on grids all strips at once, on meshes group by group
+ *   as listed   direction by direction and row by row on grids, outward on meshes
+ *   as walked   exactly as the ops of Skein's plan go: on grids all strips at once, on meshes group by group, and halves
+ *               where they are swept forward and back
  * and particles are numbered as the user has them, or as they lie in the world. */
 typedef enum bench_order { BENCH_AS_LISTED, BENCH_AS_WALKED } bench_order;
 plain_system *bench_plain(const skein_world *world, bench_order order, bool as_they_lie, double h);
-/* Springs as another world lists them, of the same particles in the state of `world`. */
-plain_system *bench_plain_listed_by(const skein_world *world, const skein_world *listing, double h);
+/* Sort by sort, each as a reader of the mesh's faces comes upon their ends. */
+plain_system *bench_plain_as_filed(const skein_world *world, const skein_mesh *mesh, double h);
 
 /* ---- ops of a plan alone ---- */
 
@@ -61,7 +62,7 @@ typedef struct bench_ops bench_ops;
 bench_ops *bench_ops_create(skein_world *world, sk_op_kind kind);
 void bench_ops_destroy(bench_ops *ops);
 void bench_ops_run(void *ops);      /* timed: all iterations */
-void bench_ops_run_once(void *ops); /* one iteration */
+void bench_ops_run_once(void *ops); /* the second iteration, in which all ops are due */
 size_t bench_ops_iterations(const bench_ops *ops);
 /* The forces that one iteration adds up, in the user's order. */
 void bench_ops_forces(bench_ops *ops, double *out);

@@ -133,16 +133,15 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
     }
 }
 
-/* The rows, or the blocks in rows, of a half: every one or every second, and whether the odd ones. Halves are by rows
- * for elements along rows, so that chains of elements stay whole. */
+/* The rows, or the blocks in rows, of a half: every one or every second, and whether the odd ones. */
 typedef struct stride {
     size_t row, block;
     bool odd;
 } stride;
 
 SK_INLINE stride stride_of(const sk_sweep *sweep, sk_half half) {
-    bool along_rows = sweep->walk.reach == 0 && sweep->walk.rows > 1;
-    return (stride){half && along_rows ? 2 : 1, half && !along_rows ? 2 : 1, half == SK_ODD_HALF};
+    bool by_rows = sk_sweep_halves_rows(sweep);
+    return (stride){half && by_rows ? 2 : 1, half && !by_rows ? 2 : 1, half == SK_ODD_HALF};
 }
 /* The first row or block of the half from `from` on. */
 SK_INLINE size_t first_of(size_t from, size_t every, bool odd) {

@@ -53,4 +53,18 @@ struct sk_sweep {
     char label[48];       /* the batch's, and the direction */
 };
 
+static inline size_t sk_sweep_lane_count(const sk_sweep *sweep) {
+    return (sweep->strips ? sweep->walk.rows * sweep->walk.width : sweep->group_count) * SK_LANES;
+}
+/* Whether halves of it are by rows, so that chains of elements stay whole; else they are by blocks in rows. */
+static inline bool sk_sweep_halves_rows(const sk_sweep *sweep) {
+    return sweep->walk.reach == 0 && sweep->walk.rows > 1;
+}
+/* Whether an op that projects a half has a lane, which counts from the sweep's first. */
+static inline bool sk_sweep_half_has(const sk_sweep *sweep, sk_half half, size_t lane) {
+    if (!sweep->strips || half == SK_WHOLE) return true;
+    size_t block = lane / SK_LANES, row = block / sweep->walk.width, column = block % sweep->walk.width;
+    return (sk_sweep_halves_rows(sweep) ? row : column) % 2 == (half == SK_ODD_HALF);
+}
+
 #endif

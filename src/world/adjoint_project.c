@@ -88,11 +88,6 @@ static sort_of_kind sort_of(const sk_batch *batch) {
     return is_distance(batch) || batch->type->linear ? BY_LENGTH : BY_DIFFERENCES;
 }
 
-/* The lanes of a sweep. */
-static size_t lanes_of(const sk_sweep *sweep) {
-    return (sweep->strips ? sweep->walk.rows * sweep->walk.width : sweep->group_count) * SK_LANES;
-}
-
 /* q of a linear kind: L is it times a metre where one particle is there and all others are at the origin. */
 static bool find_shares(sk_adjoint *a, projected *p) {
     const sk_batch *batch = p->batch;
@@ -463,14 +458,6 @@ static inline void reverse_length(pass *s, size_t lane, uint32_t element, size_t
 
 /* ---- ops ---- */
 
-/* Whether an op that projects half of a sweep along strips has a lane's block (element_sweeps.h). */
-static bool has_lane(const sk_op *op, const sk_sweep *sweep, size_t lane) {
-    if (!sweep->strips || op->half == SK_WHOLE) return true;
-    size_t block = lane / SK_LANES, row = block / sweep->walk.width, column = block % sweep->walk.width;
-    bool along_rows = sweep->walk.reach == 0 && sweep->walk.rows > 1;
-    return (along_rows ? row : column) % 2 == (op->half == SK_ODD_HALF);
-}
-
 static pass begin_pass(sk_adjoint *a, const sk_op *op, double time, skein_error *error) {
     const sk_sweep *sweep = op->rule;
     const sk_rules *rules = &a->world->rules;
@@ -552,14 +539,14 @@ static bool reverse_element(pass *s, size_t lane, uint32_t element) {
 static bool run_op(sk_adjoint *a, const sk_op *op, double time, skein_error *error) {
     pass s = begin_pass(a, op, time, error);
     sk_projections *all = a->projections;
-    size_t first = s.sweep->first_lane, count = lanes_of(s.sweep);
+    size_t first = s.sweep->first_lane, count = sk_sweep_lane_count(s.sweep);
     bool good = true, projects = !clears(op);
     size_t most = all->used + (projects ? s.sweep->element_count * s.bytes : 0);
     if (!sk_reserve(&a->world->allocator, (void **)&all->records, &all->capacity, most, 1))
         return !sk_fail_memory(error, "a gradient");
     for (size_t l = 0; l < count && good; l++) {
         uint32_t element = s.p->element[first + l];
-        if (element == NOBODY || !has_lane(op, s.sweep, l)) continue;
+        if (element == NOBODY || !sk_sweep_half_has(s.sweep, op->half, l)) continue;
         if (projects) good = run_element(&s, first + l, element);
         else s.p->multiplier[first + l] = 0;
     }
@@ -581,9 +568,9 @@ static bool reverse_op(sk_adjoint *a, const sk_op *op, double time, skein_error 
     pass s = begin_pass(a, op, time, error);
     size_t first = s.sweep->first_lane;
     bool good = true;
-    for (size_t l = lanes_of(s.sweep); l-- > 0 && good;) {
+    for (size_t l = sk_sweep_lane_count(s.sweep); l-- > 0 && good;) {
         uint32_t element = s.p->element[first + l];
-        if (element == NOBODY || !has_lane(op, s.sweep, l)) continue;
+        if (element == NOBODY || !sk_sweep_half_has(s.sweep, op->half, l)) continue;
         if (!clears(op)) good = reverse_element(&s, first + l, element);
         else s.p->bar[first + l] = 0;
     }
