@@ -317,15 +317,17 @@ static bool take_shares(sk_touch *touch) {
 }
 
 /* Those that are held back may come near their own surface: pairs of patches that were calm are kept, and vertices of panels
- * that were spread are lost. */
+ * that were spread are lost; in a storm, whose searches are for all, so are all others. */
 static bool disturb(sk_touch *touch, sk_allocator *allocator, bool *lost) {
     bool good = true;
-    for (size_t v = 0; v < touch->skin.vertex_count && !touch->storm && good; v++) {
+    for (size_t v = 0; v < touch->skin.vertex_count && good; v++) {
         if (!touch->lowered[v]) continue;
         good = sk_calm_disturb(touch, allocator, v);
         if (touch->spread.count) sk_spread_disturb(touch, v);
     }
-    *lost |= sk_spread_come_in(touch);
+    const bool came_in = sk_spread_come_in(touch);
+    if (came_in && touch->storm) memset(touch->lost, 1, touch->skin.vertex_count);
+    *lost |= came_in;
     return good;
 }
 
@@ -449,7 +451,7 @@ static bool find_shares(sk_touch *touch, sk_allocator *allocator, real least) {
         if (touch->corrects) sk_touch_hold_taut(touch);
         bool lost = take_shares(touch);
         if (!disturb(touch, allocator, &lost) || (lost && !sk_touch_search_ways(touch, allocator)) ||
-            !sk_touch_list_closing(touch, allocator, least, false))
+            !sk_touch_list_closing(touch, allocator, least, lost && touch->storm))
             return false;
     }
 }

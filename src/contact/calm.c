@@ -10,9 +10,11 @@
 /* How far vertices of each of sixteen patches have moved against each other, at most; squares. A patch may turn as a whole:
  * that takes no distance away. */
 typedef struct sk_moves {
-    SK_VECTOR_ALIGNED real whole[SK_PATCH_LANES]; /* since distances were looked at, where all of the ways are gone; */
+    SK_VECTOR_ALIGNED real begin[SK_PATCH_LANES]; /* since distances were looked at, before this substep; */
+    SK_VECTOR_ALIGNED real whole[SK_PATCH_LANES]; /* after it, where all of the ways are gone; */
     SK_VECTOR_ALIGNED real any[SK_PATCH_LANES];   /* on any shares of them; */
-    SK_VECTOR_ALIGNED real way[SK_PATCH_LANES];   /* in this substep, where it may not turn */
+    SK_VECTOR_ALIGNED real way[SK_PATCH_LANES];   /* in this substep, where it may not turn, on whole ways; */
+    SK_VECTOR_ALIGNED real share[SK_PATCH_LANES]; /* and on any shares of them */
 } sk_moves;
 
 /* To places q, from p, where all go `common`; without p, of q alone. */
@@ -117,10 +119,14 @@ void SK_KERNEL(moves)(const sk_vec4 *p, const sk_vec3 *common, const sk_vec4 *q,
             way = around(way, minus(to, at));
         }
         const sk_mask good = now.good & then.good;
-        sk_wide any = square_across(p ? around(around(whole, begin.low), begin.high) : whole);
         *(sk_wide *)(void *)(moves->whole + l) = sk_select(good, square_across(whole), far);
-        *(sk_wide *)(void *)(moves->any + l) = sk_select(good, any, far);
-        *(sk_wide *)(void *)(moves->way + l) = square_across(p ? way : whole);
+        if (!p) continue;
+        const sk_wide3 none = {sk_splat(0), sk_splat(0), sk_splat(0)};
+        const moves_box any = around(around(whole, begin.low), begin.high);
+        *(sk_wide *)(void *)(moves->begin + l) = sk_select(good, square_across(begin), far);
+        *(sk_wide *)(void *)(moves->any + l) = sk_select(good, square_across(any), far);
+        *(sk_wide *)(void *)(moves->way + l) = square_across(way);
+        *(sk_wide *)(void *)(moves->share + l) = square_across(around(way, none));
     }
 }
 #else
@@ -133,8 +139,8 @@ static const real rounding = (real)0.004;
  * and a body of them that falls as it was built had 226,000 pairs to look at in each substep. */
 static const real wide_room = (real)0.2, narrow_room = (real)0.008;
 /* A pair that loses less than nine tenths of its gap in a substep does not close. It loses no more than its corners move
- * against each other in it; its gap before the substep is no less than its distance after it without that. */
-static const real closing_share = (real)0.4;
+ * against each other in it; and its gap before the substep is its distance then. */
+static const real closing_share = (real)0.85;
 
 /* ---- one patch ---- */
 
@@ -242,7 +248,7 @@ static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, real room, int 
     }
     const real slack = least_of(slacks) - rounding * touch->thickness, nearest = least_of(distances);
     // (what is no number is not calm)
-    patch->calm = slack > room * touch->thickness && nearest < SK_REAL_MAX;
+    patch->calm = !calm->never && slack > room * touch->thickness && nearest < SK_REAL_MAX;
     if (!patch->calm) return false;
     patch->slack = slack, patch->distance = nearest;
     move_from(calm, p, x);
@@ -273,7 +279,7 @@ static void know_thicknesses(sk_touch *touch) {
 static real room_of(const sk_calm_patch *patch, real any) {
     if (!patch->calm) return SK_REAL_MAX;
     const real moved = sk_sqrt(any);
-    return sk_min(patch->slack - moved, closing_share / (1 + closing_share) * (patch->distance - moved));
+    return sk_min(patch->slack - moved, closing_share * (patch->distance - moved));
 }
 
 /* Whether a patch is left out by panels that are spread (spread.h), and so is of no interest. */
@@ -349,25 +355,36 @@ bool sk_calm_look(sk_touch *touch, sk_allocator *allocator, bool all) {
     return conclude(touch, allocator, false);
 }
 
-/* Whether a patch is calm, whatever shares of their ways vertices go; all squares. */
-static bool is_calm(const sk_calm_patch *patch, real moved, real way) {
-    const real most = closing_share * (patch->distance - sk_sqrt(moved));
-    return patch->calm && moved <= patch->slack * patch->slack && way <= most * most;
+/* Whether a patch is calm that had moved by `begin` before a substep, moves by `way` in it and then has by `moved`; all squares. */
+static bool is_calm(const sk_calm_patch *patch, real begin, real moved, real way) {
+    const real gap = patch->distance - sk_sqrt(begin);
+    return patch->calm && gap > 0 && moved <= patch->slack * patch->slack &&
+           way <= closing_share * closing_share * gap * gap;
 }
 
-/* In a storm, a patch is calm on any shares, or not. */
-static void follow_in_storm(sk_touch *touch, size_t p, real any, real way, int thread) {
-    sk_calm_patch *patch = &touch->calm.patch[p];
-    if (is_calm(patch, any, way) || !look_at(touch, p, touch->p, rounding, thread)) return;
-    real moved = moved_in_substep(touch, p);
-    patch->calm = is_calm(patch, moved * moved, moved * moved);
+/* Looks at a patch where the substep begins: whether it is calm on any shares of the ways from there; `moved` by no more than that. */
+static bool is_calm_from_start(sk_touch *touch, size_t p, real *moved, int thread) {
+    if (!look_at(touch, p, touch->p, rounding, thread)) return false;
+    const real way = moved_in_substep(touch, p);
+    *moved = way * way;
+    return is_calm(&touch->calm.patch[p], 0, *moved, *moved);
 }
 
-/* Whether a patch is still calm; to be asked of those that were. */
-static bool follow_patch(sk_touch *touch, size_t p, real whole, real any, real way, int thread) {
+/* Whether a patch is still calm, and by how much it has `moved` since it was looked at, on any shares; in a storm that is asked of all,
+ * else of those that were. */
+static bool follow_patch(sk_touch *touch, size_t p, const sk_moves *moves, size_t lane, real *moved, int thread) {
     sk_calm_patch *patch = &touch->calm.patch[p];
-    patch->whole = !is_calm(patch, any, way);
-    return is_calm(patch, whole, way) || (look_at(touch, p, touch->q, rounding, thread) && is_calm(patch, 0, way));
+    const real begin = moves->begin[lane], way = moves->way[lane];
+    *moved = moves->any[lane];
+    patch->whole = !is_calm(patch, begin, *moved, moves->share[lane]);
+    if (!patch->whole || is_calm(patch, begin, moves->whole[lane], way)) return true;
+    if (!touch->storm && look_at(touch, p, touch->q, rounding, thread)) {
+        *moved = 0;
+        if (is_calm(patch, way, 0, way))
+            return true; // its gaps before were no less than they are after it, less the way
+    }
+    patch->whole = false;
+    return is_calm_from_start(touch, p, moved, thread);
 }
 
 bool sk_calm_holds(sk_touch *touch, real way) {
@@ -393,11 +410,11 @@ static void follow_some(void *data, int thread, size_t begin, size_t end) {
         for (size_t i = p; i < p + SK_PATCH_LANES && i < end; i++) {
             if (is_out(touch, i)) continue;
             sk_calm_patch *patch = &calm->patch[i];
-            real whole = moves.whole[i - p], any = moves.any[i - p], way = moves.way[i - p];
-            if (touch->storm) follow_in_storm(touch, i, any, way, thread);
-            else patch->ceased = patch->calm && !follow_patch(touch, i, whole, any, way, thread);
-            patch->calm &= !patch->ceased;
-            least = sk_min(least, room_of(patch, any));
+            const bool was = patch->calm;
+            real moved = 0;
+            if (was || touch->storm) patch->calm = follow_patch(touch, i, &moves, i - p, &moved, thread);
+            patch->ceased = was && !patch->calm && !touch->storm;
+            least = sk_min(least, room_of(patch, moved));
         }
         *holds = touch->storm ? -1 : sk_min(SK_REAL_MAX, calm->gone + least);
     }

@@ -59,6 +59,7 @@ typedef struct sk_calm {
     uint8_t *found;
     int threads;
     size_t most; /* pairs of a patch */
+    bool never;  /* is any calm: tests ask for it */
 } sk_calm;
 
 struct sk_touch;

@@ -17,6 +17,11 @@ static void stay_settled(sk_pairs *fresh, uint64_t key, uint8_t settled) {
     if (low < fresh->count && fresh->key[low] == key) fresh->settled[low] = settled;
 }
 
+static void all_stay_settled(const sk_pairs *pairs, sk_pairs *fresh) {
+    for (size_t k = 0; k < pairs->count; k++)
+        if (pairs->settled[k]) stay_settled(fresh, pairs->key[k], pairs->settled[k]);
+}
+
 static inline bool goes(const sk_touch *touch, const sk_pairs *pairs, size_t k) {
     const uint8_t *lost = touch->lost;
     return lost[pairs->corner[0][k]] | lost[pairs->corner[1][k]] | lost[pairs->corner[2][k]] | lost[pairs->corner[3][k]];
@@ -60,6 +65,7 @@ static void take_out(const sk_touch *touch, sk_pairs *late, sk_pairs *fresh) {
 bool sk_touch_keep(sk_touch *touch, sk_allocator *allocator, int sort, bool all, bool midst) {
     sk_pairs *kept = &touch->kept[sort], *late = &touch->late[sort], *fresh = &touch->fresh;
     if (all) {
+        for (int i = 0; midst && i < 2; i++) all_stay_settled(i ? late : kept, fresh);
         sk_pairs other = *kept;
         *kept = *fresh, *fresh = other;
         late->count = 0;
