@@ -239,9 +239,11 @@ static bool mark_lost(sk_touch *touch, const sk_run *run, const sk_op *op) {
 
 /* Whether a search for all has been used up so soon that searches for one substep each would have cost less: as measured, a
  * third of one that holds for longer, and those for the lost between cost by how many they are. Where few pairs are kept,
- * it is the boxes that cost, and a sheet that swings cost twice as much so. */
+ * it is the boxes that cost, and a sheet that swings cost twice as much so; unless half of all have been lost: flags that flutter take three
+ * quarters of the time so. */
 static bool is_stormy(const sk_touch *touch) {
-    if (sk_pairs_kept(touch) < 8 * touch->skin.vertex_count) return false;
+    const size_t vertices = touch->skin.vertex_count;
+    if (sk_pairs_kept(touch) < 8 * vertices && 2 * touch->lost_since < vertices) return false;
     double all = 3, each = 0.15, lost = (double)touch->lost_since / (double)touch->skin.vertex_count;
     return touch->found && all + each * (double)touch->searched_since + all * lost > 1.3 * (double)touch->now;
 }
