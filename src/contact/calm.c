@@ -247,10 +247,12 @@ static bool look_at(sk_touch *touch, size_t p, const sk_vec4 *x, real room, int 
         }
     }
     const real slack = least_of(slacks) - rounding * touch->thickness, nearest = least_of(distances);
+    // of a gap so much does not count, and of thin bodies beside thick ones that is much
+    const real none = 2 * SK_LEAST_GAP * touch->thickness;
     // (what is no number is not calm)
     patch->calm = !calm->never && slack > room * touch->thickness && nearest < SK_REAL_MAX;
     if (!patch->calm) return false;
-    patch->slack = slack, patch->distance = nearest;
+    patch->slack = slack, patch->distance = nearest - none;
     move_from(calm, p, x);
     return true;
 }

@@ -28,7 +28,7 @@ enum { SK_PATCH_LEAVES = 4, SK_PATCH_LANES = 16 };
 /* What is known of a patch. */
 typedef struct sk_calm_patch {
     real slack;    /* m: so much may its vertices move against each other; */
-    real distance; /* and how far apart the nearest of its pairs were, where the moves begin */
+    real distance; /* and the least gap of its pairs, less what counts for none, where the moves begin */
     bool calm;
     bool whole;  /* while all its vertices go all of their ways in this substep: not if one is held back */
     bool ceased; /* to be calm: its pairs are to be kept */
