@@ -13,7 +13,7 @@
 /* ---- a chained hash: each box in every cell that it touches, chains of entries, pairs looked at in their first cell ---- */
 
 typedef struct chained {
-    const sk_box *box;
+    sk_box *box; /* as they were when it was made: steps put others there */
     size_t count, entry_count, room, heads, pairs;
     double cell;
     uint32_t *head, *next, *item;
@@ -70,8 +70,10 @@ static void find_by_hash(void *data) {
 }
 
 static chained new_hash(const sk_touch *touch, double cells) {
-    chained c = {.box = touch->leaf_box, .count = touch->skin.leaf_count, .heads = 1};
+    chained c = {.count = touch->skin.leaf_count, .heads = 1};
     double sum = 0;
+    c.box = bench_allocate(c.count, sizeof *c.box);
+    memcpy(c.box, touch->leaf_box, c.count * sizeof *c.box);
     for (size_t i = 0; i < c.count; i++) {
         double most = 0;
         for (int k = 0; k < 3; k++) most = fmax(most, (double)(c.box[i].high[0][k] - c.box[i].low[0][k]));
@@ -88,7 +90,7 @@ static chained new_hash(const sk_touch *touch, double cells) {
 }
 
 static void free_hash(chained *c) {
-    free(c->head), free(c->next), free(c->item), free(c->cell_of);
+    free(c->box), free(c->head), free(c->next), free(c->item), free(c->cell_of);
 }
 
 /* ---- the tree ---- */
