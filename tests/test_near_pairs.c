@@ -158,7 +158,8 @@ static uint64_t hash_of_who_is_stopped(double speed, double tilt, bool all_are_l
                                      SKEIN_VEC3("rotation", 90 - tilt, 20, 0), SKEIN_VEC3("velocity", 0, -speed, 0)),
                       NULL));
     (void)statistics_of(world);
-    touch_of(world)->calm.never = touch_of(world)->spread.never = all_are_looked_for;
+    touch_of(world)->calm.never = all_are_looked_for;
+    touch_of(world)->spread.never = all_are_looked_for || without_panels;
     steps(world, 8, 1.0 / 60);
     const uint64_t hash = skein_world_hash(world);
     skein_world_destroy(world);

@@ -179,7 +179,7 @@ static void move_from(sk_calm *calm, size_t p, const sk_vec4 *x) {
     }
 }
 
-/* How far apart the moves of two vertices are at most, on any shares of their ways in this substep. */
+/* The square of how far apart the moves of two vertices are at most, on any shares of their ways in this substep. */
 static real moved_in_substep(const sk_touch *touch, size_t p) {
     const sk_calm *calm = &touch->calm;
     const size_t group = p / SK_PATCH_LANES, lane = p % SK_PATCH_LANES;
@@ -190,7 +190,8 @@ static real moved_in_substep(const sk_touch *touch, size_t p) {
         low = (sk_vec3){sk_min(low.x, d.x), sk_min(low.y, d.y), sk_min(low.z, d.z)};
         high = (sk_vec3){sk_max(high.x, d.x), sk_max(high.y, d.y), sk_max(high.z, d.z)};
     }
-    return sk_length(sk_sub(high, low));
+    const sk_vec3 across = sk_sub(high, low);
+    return sk_dot(across, across);
 }
 
 enum { SCRATCH_ROWS = 6, LINE = 64 }; /* a cache line between threads */
@@ -367,8 +368,7 @@ static bool is_calm(const sk_calm_patch *patch, real begin, real moved, real way
 /* Looks at a patch where the substep begins: whether it is calm on any shares of the ways from there; `moved` by no more than that. */
 static bool is_calm_from_start(sk_touch *touch, size_t p, real *moved, int thread) {
     if (!look_at(touch, p, touch->p, rounding, thread)) return false;
-    const real way = moved_in_substep(touch, p);
-    *moved = way * way;
+    *moved = moved_in_substep(touch, p);
     return is_calm(&touch->calm.patch[p], 0, *moved, *moved);
 }
 
