@@ -189,6 +189,26 @@ static void a_thin_rod_holds_a_sheet(void **state) {
     }
 }
 
+/* Balls of all radii beneath a sheet: where one is large for its cells these lie on their corners, less than a quarter of the thickness nearer. */
+static void round_solids_are_as_far_off(void **state) {
+    (void)state;
+    static const double radii[] = {0.04, 0.1, 0.2, 0.4, 0.8};
+    for (size_t r = 0; r < COUNT(radii); r++)
+        for (int irregular = 0; irregular < (SPARING ? 1 : 2); irregular++) {
+            skein_world *world = new_contact_world("xpbd", 10);
+            shape s = {.radius = radii[r], .centre = {0, 0.93 - radii[r], 0}};
+            turn_shape(&s, (const double[]){0, 0, 0});
+            OK(world, skein_collider_add(world, "sphere",
+                                         SKEIN_SETTINGS(SKEIN_VEC3("centre", 0, s.centre.y, 0),
+                                                        SKEIN_REAL("radius", s.radius), SKEIN_REAL("thickness", 0.006)),
+                                         NULL));
+            add_sheet(world, 31, irregular, "none", 7);
+            const seen found = watch(world, s, (vec3){0, 0, 0}, SPARING ? 25 : 60);
+            expect("ball", found, 0.0042, 0.0044, 0.1);
+            skein_world_destroy(world);
+        }
+}
+
 /* Methods that integrate forces: soft springs, damped. */
 static void forces_are_no_matter(void **state) {
     (void)state;
@@ -380,6 +400,7 @@ static void ropes_and_solids_meet_edges_and_corners(void **state) {
 int main(void) {
     const struct CMUnitTest tests[] = {cmocka_unit_test(boxes_do_not_stand_out_of_cloth),
                                        cmocka_unit_test(a_thin_rod_holds_a_sheet),
+                                       cmocka_unit_test(round_solids_are_as_far_off),
                                        cmocka_unit_test(forces_are_no_matter),
                                        cmocka_unit_test(what_lies_on_a_box_goes_with_it),
                                        cmocka_unit_test(what_grows_pushes),

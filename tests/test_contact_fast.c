@@ -287,7 +287,7 @@ static void what_is_thrown_is_not_stretched(void **state) {
     } cases[] = {
         {AT_AN_EDGE, false, 12, 0.35, 1}, {AT_AN_EDGE, true, 12, 0.35, 1},  {A_JELLY, false, 20, 0.4, 1},
         {AT_A_JELLY, false, 20, 0.5, 1},  {AT_A_JELLY, true, 12, 0.6, 0.8}, {AT_A_BALL, false, 20, 0.2, 0.4},
-        {AT_A_BALL, true, 20, 0.35, 1},   {A_BALL, false, 12, 0.2, 1},      {A_LED_BALL, false, 12, 0.25, 1},
+        {AT_A_BALL, true, 20, 0.35, 1},   {A_BALL, false, 12, 0.2, 0.8},    {A_LED_BALL, false, 12, 0.25, 0.8},
     };
     for (size_t c = SPARING ? COUNT(cases) - 2 : 0; c < COUNT(cases); c++) {
         if (is_spared(c, 4)) continue;

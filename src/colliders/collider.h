@@ -196,8 +196,8 @@ extern const sk_kernels sk_avoid;
 bool sk_contact_reads_force(const sk_collider *collider);
 
 /* Deepest penetration below the thickness (m) and the number of particles in touch. */
-void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
-                         size_t particle_count, double *penetration, size_t *contacts);
+void sk_collider_measure(const sk_collider *collider, double time, sk_isa isa, const sk_vec4 *x,
+                         const uint32_t *slot_of, size_t particle_count, double *penetration, size_t *contacts);
 
 /* How many of the free particles had to be guarded against at the present state. */
 size_t sk_collider_count_guarded(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
@@ -218,7 +218,7 @@ void sk_collider_probe_points(const sk_collider *collider, double time, sk_isa i
                               double *distances, double *normals);
 
 /* Calls `visit` for every particle in touch: what sk_collider_measure() counts. */
-void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+void sk_collider_visit(const sk_collider *collider, double time, sk_isa isa, const sk_vec4 *x, const uint32_t *slot_of,
                        size_t particle_count,
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user);
 

@@ -294,36 +294,38 @@ bool sk_contact_reads_force(const sk_collider *collider) {
     return collider->common->restitution > 0 || sk_collider_mass(collider) > 0;
 }
 
-/* Probes sixteen particles from `first` on, or as many as there are; returns how many. */
-static size_t probe_block(const sk_collider *collider, const sk_pose *pose, const sk_vec4 *x, const uint32_t *slot_of,
-                          size_t first, size_t particle_count, sk_sixteen_contacts *contacts) {
+/* How near a particle at q has to be to count as in touch: rounding must not break a resting contact. */
+static double touching_distance(sk_vec4 q, double thickness) {
+    const double size = fmax(fabs((double)q.x), fmax(fabs((double)q.y), fabs((double)q.z)));
+    return thickness * 1.001 + 4e-6 * (size + 0.1);
+}
+
+/* Probes sixteen particles from `first` on, or as many as there are, for what is in touch; returns how many. */
+static size_t probe_block(const sk_collider *collider, const sk_pose *pose, sk_isa isa, const sk_vec4 *x,
+                          const uint32_t *slot_of, size_t first, size_t particle_count, sk_sixteen_contacts *contacts) {
     size_t count = particle_count - first < SK_LANES ? particle_count - first : SK_LANES;
-    real p[3][SK_LANES] = {{0}};
-    for (size_t i = 0; i < count; i++) {
-        sk_vec4 q = x[slot_of[first + i]];
+    real p[3][SK_LANES];
+    double reach = 0;
+    for (size_t i = 0; i < SK_LANES; i++) {
+        const sk_vec4 q = x[slot_of[first + (i < count ? i : 0)]];
         p[0][i] = q.x, p[1][i] = q.y, p[2][i] = q.z;
+        reach = fmax(reach, touching_distance(q, collider->common->thickness));
     }
-    sk_probe_sixteen_of[0](collider, pose, p, SK_REAL_MAX, contacts);
+    sk_probe_sixteen_of[isa](collider, pose, p, (real)(1.001 * reach), contacts);
     return count;
 }
 
-/* Whether a particle at q, so far from the surface, counts as in touch: rounding must not break a resting contact. */
-static bool in_touch(sk_vec4 q, double distance, double thickness) {
-    double size = fmax(fabs((double)q.x), fmax(fabs((double)q.y), fabs((double)q.z)));
-    return distance <= thickness * 1.001 + 4e-6 * (size + 0.1);
-}
-
-void sk_collider_measure(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
-                         size_t particle_count, double *penetration, size_t *contacts) {
+void sk_collider_measure(const sk_collider *collider, double time, sk_isa isa, const sk_vec4 *x,
+                         const uint32_t *slot_of, size_t particle_count, double *penetration, size_t *contacts) {
     sk_pose pose = sk_collider_pose_at(collider, time);
     double thickness = collider->common->thickness;
     for (size_t first = 0; first < particle_count; first += SK_LANES) {
         sk_sixteen_contacts contact;
-        size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
+        size_t count = probe_block(collider, &pose, isa, x, slot_of, first, particle_count, &contact);
         for (size_t i = 0; i < count; i++) {
             sk_vec4 q = x[slot_of[first + i]];
             double distance = (double)contact.distance[i];
-            if (in_touch(q, distance, thickness)) ++*contacts;
+            if (distance <= touching_distance(q, thickness)) ++*contacts;
             if (q.w > 0 && thickness - distance > *penetration) *penetration = thickness - distance;
         }
     }
@@ -359,16 +361,16 @@ size_t sk_collider_count_guarded(const sk_collider *collider, double time, const
     return guarded;
 }
 
-void sk_collider_visit(const sk_collider *collider, double time, const sk_vec4 *x, const uint32_t *slot_of,
+void sk_collider_visit(const sk_collider *collider, double time, sk_isa isa, const sk_vec4 *x, const uint32_t *slot_of,
                        size_t particle_count,
                        void (*visit)(void *user, size_t particle, sk_vec3 normal, double distance), void *user) {
     sk_pose pose = sk_collider_pose_at(collider, time);
     for (size_t first = 0; first < particle_count; first += SK_LANES) {
         sk_sixteen_contacts contact;
-        size_t count = probe_block(collider, &pose, x, slot_of, first, particle_count, &contact);
+        size_t count = probe_block(collider, &pose, isa, x, slot_of, first, particle_count, &contact);
         for (size_t i = 0; i < count; i++) {
             double distance = (double)contact.distance[i];
-            if (!in_touch(x[slot_of[first + i]], distance, collider->common->thickness)) continue;
+            if (!(distance <= touching_distance(x[slot_of[first + i]], collider->common->thickness))) continue;
             sk_vec3 normal = {contact.normal[0][i], contact.normal[1][i], contact.normal[2][i]};
             visit(user, first + i, normal, distance);
         }

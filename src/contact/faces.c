@@ -10,8 +10,9 @@
  * plane leads there (alternating projections), at a corner at once, and along an edge that leads to one in steps that get small: so the last one says along
  * which line it is looked for, as on an edge. Where a solid is not convex all that holds near what is: an edge or a corner of a mesh.
  *
- * They are pushed as pairs of features are (push.c), one of which is the surface; those that were found where a substep ended are held in the next one
- * while limits are swept. One after the other: by collider, edges before triangles, in the skin's order. */
+ * Who sags by less than a quarter of the thickness between his corners, as most do on what is round, is left to these. The others are pushed as pairs of
+ * features are (push.c), one of which is the surface; those that were found where a substep ended are held in the next one while limits are swept. One
+ * after the other: by collider, edges before triangles, in the skin's order. */
 #include <string.h>
 
 #include "base/tasks.h"
@@ -32,6 +33,7 @@ typedef struct batch {
     real weight[LANES][3], best[LANES]; /* where it is looked; the least distance that was found */
     real line[LANES][2][3];             /* the ends, by weights, of the edge, or of a line on the triangle; */
     tangent end[LANES][2];              /* what is known before the nearest place on it, and after it */
+    real under[LANES];                  /* m: farther off it asks for nothing */
     sk_sixteen_contacts contacts;
     size_t count;
 } batch;
@@ -43,7 +45,7 @@ typedef struct meeting {
     bool *loaded;
     const sk_collider *collider;
     sk_pose pose, start;
-    real h, thickness; /* s, m */
+    real h, thickness, sag; /* s; m: how far off it is to be; how much nearer than their corners they may be */
     real reach, far; /* m: what is farther off touches in no substep; and who is farther off, with none of its edges */
 } meeting;
 
@@ -116,7 +118,7 @@ static void find_on_lines(const meeting *m, batch *b) {
         for (size_t l = 0; l < b->count; l++) {
             b->end[l][found[l].slope < 0 ? 0 : 1] = found[l];
             const real low = meet_of(b->end[l]).f;
-            further |= low < m->reach && b->best[l] - low > little;
+            further |= low < b->under[l] && b->best[l] - low > little;
         }
     }
 }
@@ -176,7 +178,7 @@ static void take_batch(const meeting *m, batch *b, void (*find)(const meeting *m
     if (b->count) find(m, b);
     for (size_t l = 0; l < b->count; l++) {
         sk_face *face = &b->face[l];
-        if (!(b->best[l] < m->reach)) continue;
+        if (!(b->best[l] < b->under[l])) continue;
         sk_vec3 before[3];
         for (int c = 0; c < 3; c++) before[c] = sk_xyz(m->touch->p[face->corner[c]]);
         b->place[count++] = sum_of(face->weight, before);
@@ -202,23 +204,34 @@ static real fall(const sk_touch *touch, uint32_t a, uint32_t b) {
     return sk_dot(sk_xyz(touch->faces.plane[a]), sk_sub(sk_xyz(touch->q[b]), sk_xyz(touch->q[a])));
 }
 
-/* Adds an edge or a triangle whose distance falls from each corner to another one, and not only to what is too far. */
+/* Whether not all corners are above the same plane: along that no distance falls from both ends. Or all are far. */
+static inline bool may_sag(const sk_vec4 *plane, const uint32_t *v, int corners) {
+    const size_t normal = 3 * sizeof(real);
+    return memcmp(&plane[v[0]], &plane[v[1]], normal) != 0 ||
+           (corners == 3 && memcmp(&plane[v[0]], &plane[v[2]], normal) != 0);
+}
+
+/* Adds an edge or a triangle whose distance falls from each corner to another one, and not only to what is too far, or hardly nearer than they are.
+ * Of a triangle, whose distance is above three tangent planes, it is above their mean, too, which is least at a corner. */
 static void add(const meeting *m, batch *b, const uint32_t *v, int corners, void (*find)(const meeting *m, batch *b)) {
     const sk_touch *touch = m->touch;
     sk_face *face = &b->face[b->count];
-    real low = -SK_REAL_MAX;
+    real low = -SK_REAL_MAX, nearest = SK_REAL_MAX, sum[3] = {0, 0, 0};
     for (int c = 0; c < corners; c++) {
         const sk_vec4 plane = touch->faces.plane[v[c]];
         if (!(plane.w < SK_REAL_MAX)) return;
-        const real slope = corners == 2 ? fall(touch, v[c], v[1 - c])
-                                        : sk_min(fall(touch, v[c], v[(c + 1) % 3]), fall(touch, v[c], v[(c + 2) % 3]));
+        const int next = corners == 2 ? 1 - c : (c + 1) % 3, after = corners == 2 ? next : (c + 2) % 3;
+        const real to_next = fall(touch, v[c], v[next]),
+                   to_after = after == next ? to_next : fall(touch, v[c], v[after]), slope = sk_min(to_next, to_after);
         if (!(slope < 0)) return;
-        low = sk_max(low, plane.w + slope);
+        low = sk_max(low, plane.w + slope), nearest = sk_min(nearest, plane.w);
+        sum[c] += plane.w, sum[next] += plane.w + to_next, sum[after] += plane.w + to_after;
         b->end[b->count][c & 1] = (tangent){(real)(c & 1), plane.w, c ? -slope : slope};
     }
-    if (!(low < m->reach) || !(corners == 3 || meet_of(b->end[b->count]).f < m->reach) ||
-        !sk_only_has(&m->collider->only, touch->skin.particle[v[0]]))
-        return;
+    const real under = sk_min(m->reach, nearest - m->sag);
+    const real mean = corners == 2 ? meet_of(b->end[b->count]).f : sk_min(sum[0], sk_min(sum[1], sum[2])) / 3;
+    if (!(sk_max(low, mean) < under) || !sk_only_has(&m->collider->only, touch->skin.particle[v[0]])) return;
+    b->under[b->count] = under;
     for (int c = 0; c < 3; c++) {
         face->corner[c] = v[c < corners ? c : 0];
         b->corner[b->count][c] = sk_xyz(touch->q[face->corner[c]]);
@@ -234,7 +247,7 @@ static void load(const meeting *m) {
     if (!*m->loaded) sk_touch_load(touch, m->op->packed);
     for (size_t v = 0; v < touch->skin.vertex_count; v++) {
         if (!*m->loaded) touch->q[v] = sk_load(m->run->vector[SK_X], m->op->packed, touch->slot[v]);
-        touch->faces.plane[v].w = SK_REAL_MAX;
+        touch->faces.plane[v] = (sk_vec4){0, 0, 0, SK_REAL_MAX};
     }
     *m->loaded = true;
 }
@@ -337,10 +350,22 @@ static void find_at(const meeting *m) {
     const sk_skin *skin = &m->touch->skin;
     if (!find_planes(m)) return;
     batch b = {.count = 0};
-    for (size_t e = 0; e < skin->edge_count; e++) add(m, &b, skin->edge[e], 2, find_on_lines);
+    for (size_t e = 0; e < skin->edge_count; e++)
+        if (may_sag(m->touch->faces.plane, skin->edge[e], 2)) add(m, &b, skin->edge[e], 2, find_on_lines);
     take_batch(m, &b, find_on_lines);
-    for (size_t t = 0; t < skin->triangle_count; t++) add(m, &b, skin->triangle[t], 3, find_within);
+    for (size_t t = 0; t < skin->triangle_count; t++)
+        if (may_sag(m->touch->faces.plane, skin->triangle[t], 3)) add(m, &b, skin->triangle[t], 3, find_within);
     take_batch(m, &b, find_within);
+}
+
+/* Whether a solid is so round that no feature sags by that between its corners. No place on a triangle is farther from all three of them than 0.58 of its
+ * longest side, and at a right angle to the way there the solid is nearest; sides may have got a quarter longer. */
+static bool is_round(const sk_collider *collider, real longest, real sag) {
+    skein_shape shape = {0};
+    if (collider->type->shape) collider->type->shape(collider->params, &shape);
+    if (shape.sort != SKEIN_SHAPE_BALL && shape.sort != SKEIN_SHAPE_CAPSULE) return false;
+    const double aside = 0.58 * 1.25 * (double)longest, up = shape.radius - (double)sag;
+    return up > 0 && up * up + aside * aside < shape.radius * shape.radius;
 }
 
 /* Lists what is near whatever collider, in the order of these. */
@@ -351,7 +376,7 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
     find_blocks(touch, run, op);
     for (size_t i = 0; i < faces->count && !run->no_memory; i++) {
         const sk_collider *collider = faces->collider[i];
-        const real thickness = (real)collider->common->thickness;
+        const real whole = (real)collider->common->thickness, longest = touch->skin.longest;
         const meeting m = {touch,
                            run,
                            op,
@@ -360,10 +385,11 @@ static void find_all(sk_touch *touch, sk_run *run, const sk_op *op) {
                            sk_collider_pose_at(collider, run->time - op->before_end),
                            sk_collider_pose_at(collider, run->time - op->dt),
                            (real)op->dt,
-                           thickness,
-                           (real)1.5 * thickness,
-                           (real)1.5 * (thickness + touch->skin.longest)};
-        if (collider->common->enabled) find_at(&m);
+                           whole,
+                           (real)0.25 * whole,
+                           (real)1.5 * whole,
+                           (real)1.5 * whole + (real)1.25 * longest};
+        if (collider->common->enabled && !is_round(collider, longest, m.sag)) find_at(&m);
     }
 }
 

@@ -86,8 +86,8 @@ skein_status skein_contacts_copy(const skein_world *world, skein_contact *out, s
         list.collider = sk_handle_at(world, i);
         const char *on = object->as.collider->common->on;
         for (size_t at = 0, end; sk_world_next_run(world, on, &at, &list.first, &end);)
-            sk_collider_visit(object->as.collider, world->time, all->vector[SK_X], all->slot_of + list.first,
-                              end - list.first, add_contact, &list);
+            sk_collider_visit(object->as.collider, world->time, world->isa, all->vector[SK_X],
+                              all->slot_of + list.first, end - list.first, add_contact, &list);
     }
     *count = list.count;
     return status;

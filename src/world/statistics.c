@@ -163,7 +163,7 @@ skein_status skein_world_statistics(skein_world *world, skein_statistics *statis
         const sk_collider *collider = world->rules.colliders.data[i];
         if (!collider->common->enabled) continue;
         for (size_t at = 0, first, end; sk_world_next_run(world, collider->common->on, &at, &first, &end);) {
-            sk_collider_measure(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first,
+            sk_collider_measure(collider, world->time, world->isa, all->vector[SK_X], all->slot_of + first, end - first,
                                 &statistics->max_penetration, &statistics->contacts);
             statistics->guarded +=
                 sk_collider_count_guarded(collider, world->time, all->vector[SK_X], all->slot_of + first, end - first);
