@@ -202,24 +202,40 @@ void SK_KERNEL(contact_find_held)(sk_run *run, const sk_op *op, size_t begin, si
     }
 }
 
+/* What rounding may be of a place: who is so little behind his plane lies on it. Else who was put there would be put there again and again. */
+#define HOLD_ROUNDING ((real)(sizeof(real) == 4 ? 5e-7 : 1e-15))
+
+/* Holds a part of a block; false if nobody moves. */
+SK_INLINE bool hold_part(sk_run *run, const sk_op *op, size_t slot) {
+    const bool packed = slot < op->packed;
+    const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
+    const sk_mask held = sk_positive(dot(normal, normal));
+    if (!sk_any(held)) return false;
+    const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed),
+                   level = sk_load_part(run->vector[op->source[1]], slot, packed);
+    const sk_wide3 goes = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), from = minus(xyz(x), goes);
+    const sk_wide push = dot(normal, minus(xyz(level), from)),
+                  size = sk_wide_abs(level.x) + sk_wide_abs(level.y) + sk_wide_abs(level.z);
+    const sk_mask in = sk_more(push, HOLD_ROUNDING * size) & held;
+    if (!sk_any(in)) return false;
+    const sk_wide3 moved = minus(from, xyz(sk_load_part(run->vector[SK_X0], slot, packed)));
+    const sk_wide3 slide = across(moved, normal, dot(moved, normal));
+    const sk_wide share = share_of(root(dot(slide, slide)), level.w * push);
+    const sk_wide3 to = plus(xyz(x), minus(times(push, normal), times(share, slide)));
+    sk_store_part(run->vector[op->dst], slot, packed, vec4_of(pick3(in, to, xyz(x)), x.w));
+    return true;
+}
+
 void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t end) {
     if (!__atomic_load_n(run->supported, __ATOMIC_RELAXED)) return;
-    for (size_t slot = begin; slot < end; slot += SK_PART) {
-        const bool packed = slot < op->packed;
-        const sk_wide3 normal = xyz(sk_load_part(run->vector[op->source[0]], slot, packed));
-        const sk_mask held = sk_positive(dot(normal, normal));
-        if (!sk_any(held)) continue;
-        const sk_wide4 x = sk_load_part(run->vector[op->dst], slot, packed),
-                       level = sk_load_part(run->vector[op->source[1]], slot, packed);
-        const sk_wide3 goes = xyz(sk_load_part(run->vector[op->source[2]], slot, packed)), from = minus(xyz(x), goes);
-        const sk_wide push = dot(normal, minus(xyz(level), from));
-        const sk_mask in = sk_positive(push) & held;
-        if (!sk_any(in)) continue;
-        const sk_wide3 moved = minus(from, xyz(sk_load_part(run->vector[SK_X0], slot, packed)));
-        const sk_wide3 slide = across(moved, normal, dot(moved, normal));
-        const sk_wide share = share_of(root(dot(slide, slide)), level.w * push);
-        const sk_wide3 to = plus(xyz(x), minus(times(push, normal), times(share, slide)));
-        sk_store_part(run->vector[op->dst], slot, packed, vec4_of(pick3(in, to, xyz(x)), x.w));
+    const sk_watch watch = sk_watch_of(run, op);
+    for (size_t block = begin; block < end; block += SK_LANES) {
+        if (SK_WATCHES && watch.moved && sk_watch_holds(&watch, run->found_held[block / SK_LANES], block)) continue;
+        bool moves = false;
+        for (size_t slot = block; slot < block + SK_LANES; slot += SK_PART) moves |= hold_part(run, op, slot);
+        if (!SK_WATCHES || !watch.moved) continue;
+        run->found_held[block / SK_LANES] = moves ? 0 : watch.now;
+        if (moves) sk_watch_move(&watch, block);
     }
 }
 

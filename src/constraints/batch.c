@@ -172,10 +172,20 @@ void sk_batch_release(sk_batch *batch, sk_allocator *allocator) {
     sk_enclosure_release(batch->enclosure, allocator);
     sk_aggregate_release(batch->aggregate, allocator);
     release_elements(&batch->whole, allocator);
-    void *arrays[] = {
-        batch->coarse,          batch->particle, batch->slot,      batch->rest,           batch->scale,
-        batch->sweeps,          batch->lane,     batch->lane_rest, batch->lane_stiffness, batch->lane_compliance,
-        batch->lane_multiplier, batch->special,  batch->pair};
+    void *arrays[] = {batch->coarse,
+                      batch->particle,
+                      batch->slot,
+                      batch->rest,
+                      batch->scale,
+                      batch->sweeps,
+                      batch->lane,
+                      batch->lane_rest,
+                      batch->lane_stiffness,
+                      batch->lane_compliance,
+                      batch->lane_multiplier,
+                      batch->special,
+                      batch->found,
+                      batch->pair};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) sk_release(allocator, arrays[i]);
     sk_release(allocator, batch);
 }

@@ -141,6 +141,7 @@ struct sk_batch {
     real *lane_compliance; /* and infinity here, so that they have no effect */
     real *lane_multiplier; /* lambda of XPBD, only read if a substep keeps it */
     uint8_t *special;      /* for each block of 16 lanes: some lane differs from the sweep's common values */
+    uint64_t *found;       /* and in which turn all of them were within their bound (plan/op.h, sk_watch) */
     bool stale;            /* the lanes are new, or the parameters have changed: sk_batch_refresh() is needed */
 
     sk_enclosure *enclosure; /* of a kind that has one, else NULL */

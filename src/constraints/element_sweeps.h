@@ -99,10 +99,20 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
     return true;
 }
 
+/* Whether sixteen elements are as when they were found within their bound. */
+SK_INLINE bool is_found(const sk_watch *watch, uint64_t found, size_t slot, const offsets *o) {
+    bool holds = true;
+    SK_EACH_PARTICLE (i) holds &= sk_watch_holds(watch, found, slot + (size_t)o->slots[i]);
+    return holds;
+}
+
 /* Computes sixteen elements. `mode` is a constant where this is inlined, and so is `turned`, whether lanes of some
  * block are rotated. */
 SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
-                           size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
+                           size_t slot, const offsets *o, const sk_watch *watch, bool turned, sk_element_mode mode) {
+    uint64_t *found = sweep->batch->found + lane / SK_LANES;
+    const bool watches = SK_WATCHES && mode == SK_MODE_LIMIT && watch->moved;
+    if (watches && is_found(watch, *found, slot, o)) return;
     bool special = turned || sweep->batch->special[lane / SK_LANES];
     bool reads_other = !positions_are_enough(mode);
     sk_vec4 *from = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
@@ -125,8 +135,10 @@ SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_
         }
         moves |= meet_part(sweep, constants, lane + p * SK_PART, special, mode, part, other_part);
     }
+    if (watches) *found = moves ? 0 : watch->now;
     if (!moves) return;
     SK_EACH_PARTICLE (i) {
+        if (watches) sk_watch_move(watch, slot + (size_t)o->slots[i]);
         if (!turns(o, i, turned)) continue;
         turn_back(x[i], at[i], o->shift[i]);
         if (mode == SK_MODE_LIMIT_MOVING) turn_back(other[i], other_at[i], o->shift[i]);
@@ -151,25 +163,26 @@ SK_INLINE size_t first_of(size_t from, size_t every, bool odd) {
 /* The blocks of a span in strip rows [begin, end). Along a row each block waits for the one before it, so rows that
  * share no particle are interleaved. */
 SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool turned,
-                         sk_element_mode mode) {
+                         size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
+                         bool turned, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES, first_slot = sweep->walk.first_slot;
     stride n = stride_of(sweep, half);
     size_t first = first_of(span->first, n.block, n.odd), step = n.block * SK_LANES;
     if (sweep->walk.reach) {
         for (size_t at = begin * line + first * SK_LANES; at < begin * line + span->last * SK_LANES; at += step)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, watch, turned, mode);
         return;
     }
     size_t first_row = first_of(begin, n.row, n.odd);
     for (size_t k = first; k < span->last; k += n.block)
         for (size_t at = first_row * line + k * SK_LANES; at < end * line; at += n.row * line)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, watch, turned, mode);
 }
 
 /* The same for a coarse grid, which has lanes of its own. */
 SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                           size_t end, const sk_span *span, const offsets *o, bool turned, sk_element_mode mode) {
+                           size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, bool turned,
+                           sk_element_mode mode) {
     const sk_coarse_grid *grid = &sweep->batch->coarse->grid;
     size_t width = sweep->walk.width, count = sk_coarse_columns(grid, width);
     size_t row = begin > grid->row_first ? (begin - grid->row_first + grid->row_step - 1) / grid->row_step : 0;
@@ -178,12 +191,12 @@ SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_
         if (k < span->first || k >= span->last) continue;
         for (size_t r = row, at; (at = grid->row_first + r * grid->row_step) < end; r++)
             meet_blocks(run, sweep, constants, sweep->first_lane + (r * count + b) * SK_LANES,
-                        sweep->walk.first_slot + (at * width + k) * SK_LANES, o, turned, mode);
+                        sweep->walk.first_slot + (at * width + k) * SK_LANES, o, watch, turned, mode);
     }
 }
 
 typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                       size_t end, const sk_span *span, const offsets *o, sk_half half);
+                       size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half);
 
 /* Strip rows [begin, end), one by one unless they are interleaved. `turned` walks the spans that lead over a strip's
  * end: a function of its own, since these are few and inlining it everywhere would be slow to compile. */
@@ -191,6 +204,7 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
                             span_walk *turned) {
     const sk_sweep *sweep = op->rule;
     sk_element_constants constants = sk_element_prepare(sweep->batch, op);
+    const sk_watch watch = sk_watch_of(run, op);
     offsets o[SK_MOST_ARITY];
     for (size_t i = 0; i < sweep->span_count; i++) o[i] = offsets_of(sweep, &sweep->span[i], sweep->span[i].turned);
     size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, op->half).row : 1;
@@ -200,11 +214,11 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
-            if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], false, mode);
-            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, false, mode);
+            if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], &watch, false, mode);
+            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
-                meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, true, mode);
-            else turned(run, sweep, &constants, r, stop, at, &o[i], op->half);
+                meet_span(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half, true, mode);
+            else turned(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half);
         }
     }
 }
@@ -303,9 +317,51 @@ SK_PULLS(apply, true)
 
 /* ---- groups ---- */
 
+#if defined SK_WITH_LIMITS && !defined SK_SMALL
+/* Says who moves of a part: of groups the lanes that do, for the others are anywhere. */
+SK_INLINE void tell_moved(const sk_watch *watch, const group_part *p) {
+    const uint32_t bits = sk_more_bits(sk_select(p->e.over, sk_splat(1), sk_splat(0)), sk_splat(0));
+    SK_EACH_PARTICLE (i)
+        for (size_t l = 0; l < SK_PART; l++)
+            if (bits >> l & 1) sk_watch_move(watch, p->slots[(size_t)i * SK_LANES + l]);
+}
+
+/* Limits groups, but for those that are as when they were found within their bound. */
+static void limit_watched(const skein_groups *g, const sk_element_constants *constants, const sk_watch *watch,
+                          uint64_t *found) {
+    for (size_t group = 0; group < g->count; group++) {
+        const uint32_t *slots = g->slots + group * SK_ARITY * SK_LANES;
+        uint64_t last = 0;
+        for (size_t i = 0; i < SK_ARITY * SK_LANES; i++)
+            last = watch->moved[slots[i] / 16] > last ? watch->moved[slots[i] / 16] : last;
+        if (found[group] > watch->since && last < found[group]) continue;
+        bool moves = false;
+        for (size_t part = 0; part < SK_LANES; part += SK_PART) {
+            group_part p;
+            take_part(&p, g, group, part, g->packed, SK_MODE_LIMIT);
+            take_values(&p, g, constants, SK_MODE_LIMIT);
+            if (!work_out(&p.e, constants, SK_MODE_LIMIT)) continue;
+            put_down(&p, g, g->packed, SK_MODE_LIMIT);
+            tell_moved(watch, &p);
+            moves = true;
+        }
+        found[group] = moves ? 0 : watch->now;
+    }
+}
+#endif
+
 SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t end, sk_element_mode mode) {
-    sk_element_constants constants = sk_element_prepare(((const sk_sweep *)op->rule)->batch, op);
+    const sk_sweep *sweep = op->rule;
+    sk_element_constants constants = sk_element_prepare(sweep->batch, op);
     const skein_groups groups = sk_groups_of(run, op, begin, end, mode);
+#if defined SK_WITH_LIMITS && !defined SK_SMALL
+    const sk_watch watch = sk_watch_of(run, op);
+    if (mode == SK_MODE_LIMIT && watch.moved) {
+        const size_t first = sweep->slab_start ? sweep->slab_start[begin] : begin;
+        limit_watched(&groups, &constants, &watch, sweep->batch->found + sweep->first_lane / SK_LANES + first);
+        return;
+    }
+#endif
     walk_elements(&groups, &constants, mode, NULL);
 }
 
@@ -317,20 +373,21 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
 #define SK_TURNED(name, walk)                                                                                \
     static __attribute__((noinline)) void name##_turned(                                                     \
         sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin, size_t end, \
-        const sk_span *span, const offsets *o, sk_half half) {                                               \
+        const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half) {                        \
         walk;                                                                                                \
     }
 SK_INLINE void meet_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                           size_t end, const sk_span *span, const offsets *o, sk_half half, sk_element_mode mode) {
+                           size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
+                           sk_element_mode mode) {
     if (mode == SK_MODE_LIMIT && sweep->batch->coarse)
-        meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);
-    else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);
+        meet_coarse(run, sweep, constants, begin, end, span, o, watch, true, mode);
+    else meet_span(run, sweep, constants, begin, end, span, o, watch, half, true, mode);
 }
-#define SK_WALKS(name, mode)                                                                 \
-    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, half, mode))     \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) { \
-        sweep_strips(run, op, begin, end, mode, name##_turned);                              \
-    }                                                                                        \
+#define SK_WALKS(name, mode)                                                                    \
+    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, watch, half, mode)) \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {    \
+        sweep_strips(run, op, begin, end, mode, name##_turned);                                 \
+    }                                                                                           \
     SK_GROUP_WALK(name, mode)
 #else
 #define SK_WALKS SK_GROUP_WALK
@@ -352,12 +409,13 @@ SK_WALKS(project, SK_MODE_PROJECT)
 /* Projections that keep their multipliers, with damping or without. */
 #ifdef SK_WITH_STRIPS
 SK_TOLD void keep_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool damped) {
-    meet_span(run, sweep, constants, begin, end, span, o, half, true,
+                         size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
+                         bool damped) {
+    meet_span(run, sweep, constants, begin, end, span, o, watch, half, true,
               damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
 }
-SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, half, false))
-SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, half, true))
+SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, watch, half, false))
+SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, watch, half, true))
 SK_TOLD_KEPT void keep_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
     sweep_strips(run, op, begin, end, damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT,
                  damped ? project_damped_turned : project_kept_turned);

@@ -243,7 +243,8 @@ void sk_batch_forget_sweeps(sk_batch *batch, sk_allocator *allocator) {
                        (void **)&batch->lane_stiffness,
                        (void **)&batch->lane_compliance,
                        (void **)&batch->lane_multiplier,
-                       (void **)&batch->special};
+                       (void **)&batch->special,
+                       (void **)&batch->found};
     for (size_t i = 0; i < sizeof arrays / sizeof *arrays; i++) {
         sk_release(allocator, *arrays[i]);
         *arrays[i] = NULL;
@@ -265,8 +266,9 @@ static bool allocate_lanes(sk_batch *batch, sk_allocator *allocator) {
     batch->lane_compliance = sk_allocate(allocator, size);
     batch->lane_multiplier = sk_allocate(allocator, size);
     batch->special = sk_allocate(allocator, batch->lane_count / SK_LANES);
+    batch->found = sk_allocate(allocator, batch->lane_count / SK_LANES * sizeof *batch->found);
     return batch->lane && batch->lane_rest && batch->lane_stiffness && batch->lane_compliance &&
-           batch->lane_multiplier && batch->special;
+           batch->lane_multiplier && batch->special && batch->found;
 }
 
 static bool cut(sk_batch *batch, sk_allocator *allocator, const sk_particles *particles) {

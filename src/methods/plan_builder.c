@@ -7,6 +7,7 @@ void sk_add_op(sk_plan_builder *builder, sk_op op) {
     op.before_end = builder->before_end;
     op.packed = builder->packed;
     if (!op.strained) op.strained = builder->strained;
+    if (builder->since) op.turn = ++builder->turn, op.since = builder->since;
     if (!sk_plan_add(builder->plan, builder->allocator, op)) builder->no_memory = true;
 }
 

@@ -41,6 +41,14 @@ static void add_limit_sweep(sk_plan_builder *builder, const sk_batch *batch, con
     sk_add_sweep(builder, sweep, SK_WHOLE, SK_OP_LIMIT, kernels, SK_X, velocity, far, 0, SK_ALWAYS, strained);
 }
 
+/* From here on ops that are swept over and over need not look at what has not moved since (plan/op.h, sk_watch); and here that ends. */
+static void begin_watch(sk_plan_builder *builder) {
+    builder->since = ++builder->turn;
+}
+static void end_watch(sk_plan_builder *builder) {
+    builder->since = 0;
+}
+
 /* Whether it is an edge's strain that a batch bounds, not that of what carries or spans others. */
 static bool limits_strain(const sk_batch *batch) {
     return sk_batch_has_bound(batch) && !sk_batch_carries(batch) && !batch->only_bounds;
@@ -190,6 +198,7 @@ static void write_more_sweeps(sk_plan_builder *builder) {
     const int most = more_sweeps_of(rules);
     if (!most || !(sk_writes_contacts(rules) || sk_writes_meetings(builder))) return;
     builder->sweeps_more = true;
+    begin_watch(builder);
     write_pushes(builder, sk_batch_is_firm, true, false);
     for (int turn = 0; turn < most; turn++) {
         for (size_t i = 0; i < rules->batches.count; i++) {
@@ -199,6 +208,7 @@ static void write_more_sweeps(sk_plan_builder *builder) {
         }
         write_pushes(builder, sk_batch_is_firm, false, turn == most / 2);
     }
+    end_watch(builder);
 }
 
 /* How many sweeps over limits there are to a push of surfaces. */
@@ -209,6 +219,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity) {
     const sk_rules *rules = builder->rules;
     const int most = most_limit_sweeps(rules), held = most / 2 > LEAST_HELD ? most / 2 : LEAST_HELD;
     const int alone = velocity == SK_NONE ? most - held : most; // sweeps
+    if (velocity == SK_NONE) begin_watch(builder); // else sweeps change velocities, too, and nobody pushes in between
     for (int turn = 0; turn < most; turn++) {
         if (turn == alone) write_pushes(builder, limits_strain, true, false);
         for (size_t i = 0; i < rules->batches.count; i++) {
@@ -223,6 +234,7 @@ static void write_strain_limits(sk_plan_builder *builder, sk_vector velocity) {
         if (turn >= alone)
             write_pushes(builder, limits_strain, false, turn + 1 < most && (most - turn) % SWEEPS_A_PUSH == 0);
     }
+    end_watch(builder);
 }
 
 /* Tethers pull each particle by itself, not its neighbours. On a grid, where paths are straight, that mostly does no harm, and its edges

@@ -124,6 +124,7 @@ static void set_iteration(sk_run *run, const segment_job *job, size_t iteration)
     if (!(job->dt > 0)) return;
     run->time = job->start + (double)(iteration + 1) * job->dt;
     run->iteration = iteration;
+    run->turn = job->run->turn + iteration * run->turns;
     run->last_iteration = iteration + 1 == job->iterations;
 }
 
@@ -321,6 +322,7 @@ static void run_iterations(sk_run *run, const sk_op *repeat) {
         run->iteration = iteration;
         run->last_iteration = iteration + 1 == repeat->end;
         run_ops(run, repeat + 1, repeat->length);
+        run->turn += run->turns;
     }
     run->iteration = outer_iteration;
     run->last_iteration = outer;
@@ -336,6 +338,7 @@ static void run_repeat(sk_run *run, const sk_op *repeat) {
     double start = run->time;
     run_walk(run, run->tasks, repeat + 1, repeat->length, &walk, repeat->end, start, repeat->dt);
     run->time = start + (double)repeat->end * repeat->dt;
+    run->turn += repeat->end * run->turns;
 }
 
 /* What the ops behind an op have taken, so far. */

@@ -128,6 +128,20 @@ static bool make_live(skein_world *world) {
     return !any || (world->live = sk_allocate(&world->allocator, world->plan.count * sizeof *world->live));
 }
 
+/* Room for who was moved when, where ops of the plan say so. */
+static bool make_watch(skein_world *world, uint32_t turns) {
+    const size_t blocks = world->particles.slot_count / 16;
+    sk_release(&world->allocator, world->watch.moved);
+    sk_release(&world->allocator, world->watch.found_held);
+    world->watch.moved = world->watch.found_held = NULL;
+    world->watch.turns = turns;
+    if (!SK_WATCHES || !turns || world->device || world->share)
+        return true; // other parts of a run move what they share
+    world->watch.moved = sk_allocate(&world->allocator, (blocks + 1) * sizeof *world->watch.moved);
+    world->watch.found_held = sk_allocate(&world->allocator, (blocks + 1) * sizeof *world->watch.found_held);
+    return world->watch.moved && world->watch.found_held;
+}
+
 /* How many substeps a step of dt has: as many as its method says, or more where pins are fast (`most`), but where they would be shorter
  * than four fifths of the last ones, as many as that allows, or one more than there are of those in it. A sheet of 33 x 33 that hangs still by two corners gains 0.8 J at most with all of them in steps of 1/30 and
  * 1/144 s in turn, 1e-4 so; a frame of 0.1 s between ones of 1/144: 0.1 J, and 0.007; frames of 1/30 to 1/144 by chance 0.009, and 3e-4 (two thirds
@@ -201,7 +215,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
 #ifndef SK_SMALL // no page has a part of a run
     if (world->share) sk_share_plan(&world->plan, world->share, world->isa);
 #endif
-    if (!make_live(world)) return sk_fail_memory(error, "the plan");
+    if (!make_live(world) || !make_watch(world, builder.turn)) return sk_fail_memory(error, "the plan");
     status = world->share ? sk_world_check_share(world, error) : SKEIN_OK;
     if (!status) status = make_matrix(world, error);
     if (status) return status;
@@ -269,9 +283,12 @@ static skein_status take_step(skein_world *world, double dt, double *seconds, sk
         run.seconds = seconds;
         sk_world_note_strained(world, dt);
         run.strained = world->rules.strained;
+        run.turn = world->watch.turn, run.turns = world->watch.turns;
+        run.moved = world->watch.never ? NULL : world->watch.moved, run.found_held = world->watch.found_held;
         if (world->live && !seconds) sk_run_ops(&run, world->tasks, world->live, find_live(world));
         else sk_run_ops(&run, world->tasks, world->plan.data, world->plan.count);
         sk_float_mode_leave(mode);
+        world->watch.turn = run.turn + run.turns;
         if (world->pace.levels > 1 && !seconds) sk_pace_note(&world->pace, sk_seconds() - start);
         if (world->share && world->share->failed)
             status = sk_fail(error, SKEIN_ERROR_VALUE, "share", "what lies at the border of this part did not come");

@@ -131,6 +131,8 @@ void skein_world_destroy(skein_world *world) {
     sk_surface_release(&world->surface, allocator);
     sk_release(allocator, world->plan.data);
     sk_release(allocator, world->live);
+    sk_release(allocator, world->watch.moved);
+    sk_release(allocator, world->watch.found_held);
     sk_release(allocator, world->plan.parts.data);
     skein_sparse_solver_set(world, NULL);
     sk_matrix_release(&world->matrix, allocator);

@@ -179,8 +179,13 @@ struct skein_world {
     void *method_params;
     sk_plan plan;
     sk_op *live; /* room for those of its ops that a step needs (step.c), where some are not always needed; else NULL */
-    double plan_dt;       /* the step that the plan was written for, */
-    int plan_substeps;    /* and how many substeps it has */
+    double plan_dt;    /* the step that the plan was written for, */
+    int plan_substeps; /* and how many substeps it has */
+    struct {
+        uint64_t *moved, *found_held; /* as a run has them; NULL: the plan has no ops with turns */
+        uint64_t turn, turns;         /* the next step's first one; how many the plan has */
+        bool never;                   /* for tests: all is looked at */
+    } watch;
     float substep;        /* s, of the last step, if its method shortens slowly; else 0 */
     bool sweeps_more;     /* the plan has sweeps for what is strained although nothing limits it (strained.c) */
     bool plan_stale;      /* rules, settings or the method have changed */
