@@ -4,7 +4,9 @@
 
 static void gives(const bits_case *c, const char *isa, int threads, int steps, uint64_t expected) {
     uint64_t hash = hash_of_run(c, isa, threads, steps);
-    if (hash != expected) print_message("%s, %d steps, %s: %016llx\n", c->method, steps, isa, (unsigned long long)hash);
+    if (hash != expected)
+        print_message("%s, %d steps, %s: %016llx, not %016llx\n", c->method, steps, isa, (unsigned long long)hash,
+                      (unsigned long long)expected);
     assert_true(hash == expected);
 }
 

@@ -129,8 +129,11 @@ static bool make_live(skein_world *world) {
 }
 
 /* Room for who was moved when, where ops of the plan say so. */
-static bool make_watch(skein_world *world, uint32_t turns) {
+static bool make_watch(skein_world *world) {
     const size_t blocks = world->particles.slot_count / 16;
+    uint32_t turns = 0;
+    for (size_t r = 0; r < world->plan.count; r++)
+        if (world->plan.data[r].turn > turns) turns = world->plan.data[r].turn;
     sk_release(&world->allocator, world->watch.moved);
     sk_release(&world->allocator, world->watch.found_held);
     world->watch.moved = world->watch.found_held = NULL;
@@ -215,7 +218,7 @@ skein_status sk_world_compile(skein_world *world, double dt, skein_error *error)
 #ifndef SK_SMALL // no page has a part of a run
     if (world->share) sk_share_plan(&world->plan, world->share, world->isa);
 #endif
-    if (!make_live(world) || !make_watch(world, builder.turn)) return sk_fail_memory(error, "the plan");
+    if (!make_live(world) || !make_watch(world)) return sk_fail_memory(error, "the plan");
     status = world->share ? sk_world_check_share(world, error) : SKEIN_OK;
     if (!status) status = make_matrix(world, error);
     if (status) return status;

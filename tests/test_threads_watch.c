@@ -58,8 +58,8 @@ static bool was_any_found(const skein_world *world) {
 static void nothing_changes(void **state) {
     (void)state;
     static const watching cases[] = {
-        {"grid", "xpbd", 10, 33, false, false, false, false, false, false, "sphere"},
         {"large", "xpbd", 5, 70, false, false, false, false, false, false, "sphere"},
+        {"grid", "xpbd", 10, 33, false, false, false, false, false, false, "sphere"},
         {"limited", "xpbd", 10, 24, false, false, true, false, false, false, "box"},
         {"irregular", "xpbd", 10, 25, true, false, false, false, false, false, "box"},
         {"irregular, limited", "xpbd", 5, 25, true, false, true, false, false, false, "sphere"},
