@@ -130,7 +130,7 @@ static bool make_live(skein_world *world) {
 
 /* Room for who was moved when, where ops of the plan say so. */
 static bool make_watch(skein_world *world) {
-    const size_t blocks = world->particles.slot_count / 16;
+    const size_t blocks = world->particles.slot_capacity / 16; // spare slots lie behind all others
     uint32_t turns = 0;
     for (size_t r = 0; r < world->plan.count; r++)
         if (world->plan.data[r].turn > turns) turns = world->plan.data[r].turn;
