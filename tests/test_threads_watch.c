@@ -45,7 +45,7 @@ static skein_world *new_watched(const watching *c, int threads) {
     return world;
 }
 
-/* How many blocks were passed over, of those that were last looked at in a turn. */
+/* Whether any edges were found within their bound, so that they could be passed over. */
 static bool was_any_found(const skein_world *world) {
     bool any = false;
     for (size_t i = 0; i < world->rules.batches.count; i++) {

@@ -171,8 +171,8 @@ static void a_heap_comes_to_rest(void **state) {
     (void)state;
     if (SPARING) skip();
     double logs = 0;
-    for (int tilt = 4; tilt <= 7;
-         tilt += 3) { // of a single one, chance makes a hundred times as much: a fold that still sinks
+    // of a single one, chance makes a hundred times as much: a fold that still sinks
+    for (int tilt = 4; tilt <= 7; tilt += 3) {
         skein_world *world = new_heap(40, tilt, 1);
         add_touching(world, 0.004, 0.3);
         steps(world, 420, step_length); // in double a fold falls over after 3 s

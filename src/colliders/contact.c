@@ -230,10 +230,10 @@ void SK_KERNEL(contact_hold)(sk_run *run, const sk_op *op, size_t begin, size_t 
     if (!__atomic_load_n(run->supported, __ATOMIC_RELAXED)) return;
     const sk_watch watch = sk_watch_of(run, op);
     for (size_t block = begin; block < end; block += SK_LANES) {
-        if (SK_WATCHES && watch.moved && sk_watch_holds(&watch, run->found_held[block / SK_LANES], block)) continue;
+        if (watch.moved && sk_watch_holds(&watch, run->found_held[block / SK_LANES], block)) continue;
         bool moves = false;
         for (size_t slot = block; slot < block + SK_LANES; slot += SK_PART) moves |= hold_part(run, op, slot);
-        if (!SK_WATCHES || !watch.moved) continue;
+        if (!watch.moved) continue;
         run->found_held[block / SK_LANES] = moves ? 0 : watch.now;
         if (moves) sk_watch_move(&watch, block);
     }

@@ -58,6 +58,7 @@ SK_INLINE void turn_back(sk_wide *block, const sk_wide *from, int shift) {
 typedef struct offsets {
     ptrdiff_t slots[SK_ARITY];
     int shift[SK_ARITY];
+    const sk_watch *watch; /* of what a limit walks over; else NULL */
 } offsets;
 
 /* Whether the block of particle i must be rotated. The first of a pair never is, for its place is the pair's: the
@@ -66,8 +67,9 @@ SK_INLINE bool turns(const offsets *o, int i, bool turned) {
     return turned && (SK_ARITY == 2 ? i == 1 : o->shift[i] != 0);
 }
 
-SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, bool turned) {
+SK_INLINE offsets offsets_of(const sk_sweep *sweep, const sk_span *span, const sk_watch *watch, bool turned) {
     offsets o;
+    o.watch = watch;
     SK_EACH_PARTICLE (i) {
         o.shift[i] = turned ? span->shift[i] : 0;
         o.slots[i] = ((ptrdiff_t)sweep->row_step[i] * (ptrdiff_t)sweep->walk.width + sweep->column_step[i] -
@@ -100,19 +102,20 @@ SK_INLINE bool meet_part(const sk_sweep *sweep, const sk_element_constants *cons
 }
 
 /* Whether sixteen elements are as when they were found within their bound. */
-SK_INLINE bool is_found(const sk_watch *watch, uint64_t found, size_t slot, const offsets *o) {
+SK_INLINE bool is_found(uint64_t found, size_t slot, const offsets *o) {
     bool holds = true;
-    SK_EACH_PARTICLE (i) holds &= sk_watch_holds(watch, found, slot + (size_t)o->slots[i]);
+    SK_EACH_PARTICLE (i) holds &= sk_watch_holds(o->watch, found, slot + (size_t)o->slots[i]);
     return holds;
 }
 
 /* Computes sixteen elements. `mode` is a constant where this is inlined, and so is `turned`, whether lanes of some
  * block are rotated. */
 SK_INLINE void meet_blocks(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t lane,
-                           size_t slot, const offsets *o, const sk_watch *watch, bool turned, sk_element_mode mode) {
+                           size_t slot, const offsets *o, bool turned, sk_element_mode mode) {
     uint64_t *found = sweep->batch->found + lane / SK_LANES;
+    const sk_watch *watch = o->watch;
     const bool watches = SK_WATCHES && mode == SK_MODE_LIMIT && watch->moved;
-    if (watches && is_found(watch, *found, slot, o)) return;
+    if (watches && is_found(*found, slot, o)) return;
     bool special = turned || sweep->batch->special[lane / SK_LANES];
     bool reads_other = !positions_are_enough(mode);
     sk_vec4 *from = run->vector[mode == SK_MODE_PROJECT_DAMPED ? SK_X0 : SK_V];
@@ -163,26 +166,25 @@ SK_INLINE size_t first_of(size_t from, size_t every, bool odd) {
 /* The blocks of a span in strip rows [begin, end). Along a row each block waits for the one before it, so rows that
  * share no particle are interleaved. */
 SK_INLINE void meet_span(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                         size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
-                         bool turned, sk_element_mode mode) {
+                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool turned,
+                         sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES, first_slot = sweep->walk.first_slot;
     stride n = stride_of(sweep, half);
     size_t first = first_of(span->first, n.block, n.odd), step = n.block * SK_LANES;
     if (sweep->walk.reach) {
         for (size_t at = begin * line + first * SK_LANES; at < begin * line + span->last * SK_LANES; at += step)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, watch, turned, mode);
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
         return;
     }
     size_t first_row = first_of(begin, n.row, n.odd);
     for (size_t k = first; k < span->last; k += n.block)
         for (size_t at = first_row * line + k * SK_LANES; at < end * line; at += n.row * line)
-            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, watch, turned, mode);
+            meet_blocks(run, sweep, constants, sweep->first_lane + at, first_slot + at, o, turned, mode);
 }
 
 /* The same for a coarse grid, which has lanes of its own. */
 SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                           size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, bool turned,
-                           sk_element_mode mode) {
+                           size_t end, const sk_span *span, const offsets *o, bool turned, sk_element_mode mode) {
     const sk_coarse_grid *grid = &sweep->batch->coarse->grid;
     size_t width = sweep->walk.width, count = sk_coarse_columns(grid, width);
     size_t row = begin > grid->row_first ? (begin - grid->row_first + grid->row_step - 1) / grid->row_step : 0;
@@ -191,12 +193,12 @@ SK_INLINE void meet_coarse(sk_run *run, const sk_sweep *sweep, const sk_element_
         if (k < span->first || k >= span->last) continue;
         for (size_t r = row, at; (at = grid->row_first + r * grid->row_step) < end; r++)
             meet_blocks(run, sweep, constants, sweep->first_lane + (r * count + b) * SK_LANES,
-                        sweep->walk.first_slot + (at * width + k) * SK_LANES, o, watch, turned, mode);
+                        sweep->walk.first_slot + (at * width + k) * SK_LANES, o, turned, mode);
     }
 }
 
 typedef void span_walk(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                       size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half);
+                       size_t end, const sk_span *span, const offsets *o, sk_half half);
 
 /* Strip rows [begin, end), one by one unless they are interleaved. `turned` walks the spans that lead over a strip's
  * end: a function of its own, since these are few and inlining it everywhere would be slow to compile. */
@@ -206,7 +208,8 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
     sk_element_constants constants = sk_element_prepare(sweep->batch, op);
     const sk_watch watch = sk_watch_of(run, op);
     offsets o[SK_MOST_ARITY];
-    for (size_t i = 0; i < sweep->span_count; i++) o[i] = offsets_of(sweep, &sweep->span[i], sweep->span[i].turned);
+    for (size_t i = 0; i < sweep->span_count; i++)
+        o[i] = offsets_of(sweep, &sweep->span[i], SK_WATCHES ? &watch : NULL, sweep->span[i].turned);
     size_t side_by_side = sweep->walk.reach == 0 ? SK_ROWS_SIDE_BY_SIDE * stride_of(sweep, op->half).row : 1;
     const sk_coarse *coarse = mode == SK_MODE_LIMIT ? sweep->batch->coarse : NULL;
     if (coarse && sweep->walk.reach == 0) side_by_side = SK_ROWS_SIDE_BY_SIDE * coarse->grid.row_step;
@@ -214,11 +217,11 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
         size_t stop = r + side_by_side < end ? r + side_by_side : end;
         for (size_t i = 0; i < sweep->span_count; i++) {
             const sk_span *at = &sweep->span[i];
-            if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], &watch, false, mode);
-            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half, false, mode);
+            if (coarse && !at->turned) meet_coarse(run, sweep, &constants, r, stop, at, &o[i], false, mode);
+            else if (!at->turned) meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, false, mode);
             else if (mode == SK_MODE_PROJECT && SK_ARITY == 2)
-                meet_span(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half, true, mode);
-            else turned(run, sweep, &constants, r, stop, at, &o[i], &watch, op->half);
+                meet_span(run, sweep, &constants, r, stop, at, &o[i], op->half, true, mode);
+            else turned(run, sweep, &constants, r, stop, at, &o[i], op->half);
         }
     }
 }
@@ -231,7 +234,7 @@ SK_INLINE void sweep_strips(sk_run *run, const sk_op *op, size_t begin, size_t e
 SK_INLINE void pull_span(sk_run *run, const sk_op *op, const sk_sweep *sweep, const sk_element_constants *constants,
                          size_t r, const sk_span *span, bool turned, const bool *gets, sk_element_mode mode) {
     size_t line = sweep->walk.width * SK_LANES;
-    offsets o = offsets_of(sweep, span, turned);
+    offsets o = offsets_of(sweep, span, NULL, turned);
     for (size_t at = r * line + span->first * SK_LANES; at < r * line + span->last * SK_LANES; at += SK_LANES) {
         size_t lane = sweep->first_lane + at, slot = sweep->walk.first_slot + at;
         bool special = turned || sweep->batch->special[lane / SK_LANES];
@@ -373,21 +376,20 @@ SK_INLINE void sweep_groups(sk_run *run, const sk_op *op, size_t begin, size_t e
 #define SK_TURNED(name, walk)                                                                                \
     static __attribute__((noinline)) void name##_turned(                                                     \
         sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin, size_t end, \
-        const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half) {                        \
+        const sk_span *span, const offsets *o, sk_half half) {                                               \
         walk;                                                                                                \
     }
 SK_INLINE void meet_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                           size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
-                           sk_element_mode mode) {
+                           size_t end, const sk_span *span, const offsets *o, sk_half half, sk_element_mode mode) {
     if (mode == SK_MODE_LIMIT && sweep->batch->coarse)
-        meet_coarse(run, sweep, constants, begin, end, span, o, watch, true, mode);
-    else meet_span(run, sweep, constants, begin, end, span, o, watch, half, true, mode);
+        meet_coarse(run, sweep, constants, begin, end, span, o, true, mode);
+    else meet_span(run, sweep, constants, begin, end, span, o, half, true, mode);
 }
-#define SK_WALKS(name, mode)                                                                    \
-    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, watch, half, mode)) \
-    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) {    \
-        sweep_strips(run, op, begin, end, mode, name##_turned);                                 \
-    }                                                                                           \
+#define SK_WALKS(name, mode)                                                                 \
+    SK_TURNED(name, meet_turned(run, sweep, constants, begin, end, span, o, half, mode))     \
+    void SK_KERNEL(name##_strips)(sk_run * run, const sk_op *op, size_t begin, size_t end) { \
+        sweep_strips(run, op, begin, end, mode, name##_turned);                              \
+    }                                                                                        \
     SK_GROUP_WALK(name, mode)
 #else
 #define SK_WALKS SK_GROUP_WALK
@@ -409,13 +411,12 @@ SK_WALKS(project, SK_MODE_PROJECT)
 /* Projections that keep their multipliers, with damping or without. */
 #ifdef SK_WITH_STRIPS
 SK_TOLD void keep_turned(sk_run *run, const sk_sweep *sweep, const sk_element_constants *constants, size_t begin,
-                         size_t end, const sk_span *span, const offsets *o, const sk_watch *watch, sk_half half,
-                         bool damped) {
-    meet_span(run, sweep, constants, begin, end, span, o, watch, half, true,
+                         size_t end, const sk_span *span, const offsets *o, sk_half half, bool damped) {
+    meet_span(run, sweep, constants, begin, end, span, o, half, true,
               damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT);
 }
-SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, watch, half, false))
-SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, watch, half, true))
+SK_TURNED(project_kept, keep_turned(run, sweep, constants, begin, end, span, o, half, false))
+SK_TURNED(project_damped, keep_turned(run, sweep, constants, begin, end, span, o, half, true))
 SK_TOLD_KEPT void keep_strips(sk_run *run, const sk_op *op, size_t begin, size_t end, bool damped) {
     sweep_strips(run, op, begin, end, damped ? SK_MODE_PROJECT_DAMPED : SK_MODE_PROJECT_KEPT,
                  damped ? project_damped_turned : project_kept_turned);

@@ -40,7 +40,7 @@ static void store(const sk_touch *touch, const sk_run *run, const sk_op *op, siz
     const sk_vec3 old = sk_xyz(sk_load(run->vector[SK_X], op->packed, slot)), now = sk_xyz(touch->q[v]);
     sk_store_at(run->vector[SK_X], op->packed, slot, now);
     const sk_watch watch = sk_watch_of(run, op);
-    if (SK_WATCHES && watch.moved) sk_watch_move(&watch, slot);
+    if (watch.moved) sk_watch_move(&watch, slot);
     if (op->source[1] != SK_NONE)
         sk_add_at(run->vector[op->source[1]], op->packed, slot, sk_scale((real)(1 / op->dt), sk_sub(now, old)));
 }

@@ -48,8 +48,8 @@ typedef struct sk_plan_builder {
     bool presses;       /* surfaces that are near press each other apart within the solve, and are not pushed */
     double before_end;  /* how long before the end of the substep X is now, s */
     size_t substep;     /* the place of the substep's repeat */
-    uint32_t turn,
-        since; /* of ops that have turns (plan/op.h): the last one; since when what is found holds, or 0: ops that are added now have none */
+    uint32_t turn;      /* the last one of ops that have turns (plan/op.h) */
+    uint32_t since;     /* that of ops that are added now, which then have turns; 0: they have none */
     const bool *strained; /* ops that are added now run only where that is so; NULL: always */
     bool no_memory;       /* the plan is incomplete */
 } sk_plan_builder;

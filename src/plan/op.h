@@ -153,13 +153,12 @@ struct sk_run {
     size_t iteration;     /* of the innermost repeat, from 0 on, */
     bool last_iteration;  /* and whether it is the last */
     bool strained;        /* when the step began some edge was near its bound (world/strained.c) */
-    uint64_t turn, turns; /* added to ops' own turns they never get less; how many a pass over the plan has */
-    uint64_t *
-        moved; /* of sixteen slots: in which turn the last of them was moved, by ops that have turns; NULL: nobody says */
-    uint64_t *found_held; /* and in which none was to be held any more (colliders/contact.c) */
     bool near;            /* surfaces are near each other in this substep, */
     double near_at;       /* which ends at this time */
     bool no_memory;       /* an allocation failed: so will the step */
+    uint64_t turn, turns; /* added to ops' own turns they never get less; how many a pass over the plan has */
+    uint64_t *moved;      /* of sixteen slots: in which turn any was moved last; NULL: nobody says (sk_watch) */
+    uint64_t *found_held; /* and in which none was to be held any more (colliders/contact.c) */
 };
 
 typedef void sk_op_kernel(sk_run *run, const sk_op *op, size_t begin, size_t end);
@@ -253,14 +252,13 @@ struct sk_op {
     size_t every;         /* it runs in every `every`-th iteration of its repeat, and in the last; 0: in all */
     sk_op_while during;   /* and, unless SK_ALWAYS, only while surfaces are near each other, or only while not; */
     const bool *strained; /* and, unless NULL, only in steps that begin with edges near their bounds */
-    uint32_t turn,
-        since; /* of an op that need not look at what has not moved since it did: its number in a pass; what was found before the turn
-                           * `since` counts for none. 0: it looks at all, and does not say whom it moves */
-    size_t packed; /* slots [0, packed) are in packed blocks when it runs */
-    sk_walk walk;  /* of ops whose elements are strip rows */
-    sk_half half;  /* of a sweep along strips */
-    size_t length; /* of a repeat, a solve or a part: how many ops after it belong to it */
-    int part;      /* a part's number */
+    size_t packed;        /* slots [0, packed) are in packed blocks when it runs */
+    sk_walk walk;         /* of ops whose elements are strip rows */
+    sk_half half;         /* of a sweep along strips */
+    size_t length;        /* of a repeat, a solve or a part: how many ops after it belong to it */
+    int part;             /* a part's number */
+    uint32_t turn;  /* its number among those of a pass that pass over what has not moved (sk_watch); 0: it is none */
+    uint32_t since; /* and what was found before that turn counts for none */
 };
 
 /* The force m g + f - (linear + rate m) v on every particle: gravity, uniform wind and air drag together. Predictions
@@ -299,20 +297,21 @@ static inline bool sk_op_is_due(const sk_run *run, const sk_op *op) {
     return op->every < 2 || run->iteration % op->every == op->every - 1;
 }
 
-/* For ops that are swept over and over: most of what they look at is as they left it, and has not moved. Who is passed over was found in a turn
- * after all of his last moved, which is as good as to find him again: the same bits. */
 #ifdef SK_SMALL // a page waits for each byte
 #define SK_WATCHES false
 #else
 #define SK_WATCHES true
 #endif
+
+/* For ops that are swept over and over: most of what they look at is as they left it, and has not moved. Who is passed over was found in a turn
+ * after all of his last moved, which is as good as to find him again: the same bits. */
 typedef struct sk_watch {
     uint64_t since, now;
     uint64_t *moved; /* NULL: nobody watches */
 } sk_watch;
 
-static inline sk_watch sk_watch_of(const sk_run *run, const sk_op *op) {
-    return (sk_watch){run->turn + op->since, run->turn + op->turn, op->turn ? run->moved : NULL};
+static inline __attribute__((always_inline)) sk_watch sk_watch_of(const sk_run *run, const sk_op *op) {
+    return (sk_watch){run->turn + op->since, run->turn + op->turn, SK_WATCHES && op->turn ? run->moved : NULL};
 }
 /* Whether what was found in a turn holds for what lies at a slot. */
 static inline bool sk_watch_holds(const sk_watch *watch, uint64_t found, size_t slot) {
@@ -322,6 +321,7 @@ static inline bool sk_watch_holds(const sk_watch *watch, uint64_t found, size_t 
 static inline void sk_watch_move(const sk_watch *watch, size_t slot) {
     __atomic_store_n(&watch->moved[slot / 16], watch->now, __ATOMIC_RELAXED);
 }
+
 /* One line about an op, as `skein explain` shows it. */
 void sk_op_describe(const sk_op *op, char *text, size_t size);
 /* Bits of the vectors whose values before the op affect it, and of those that it writes. */

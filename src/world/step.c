@@ -130,19 +130,24 @@ static bool make_live(skein_world *world) {
 
 /* Room for who was moved when, where ops of the plan say so. */
 static bool make_watch(skein_world *world) {
+    if (!SK_WATCHES) return true;
     const size_t blocks = world->particles.slot_capacity / 16; // spare slots lie behind all others
     uint32_t turns = 0;
     for (size_t r = 0; r < world->plan.count; r++)
         if (world->plan.data[r].turn > turns) turns = world->plan.data[r].turn;
+    // other parts of a run move what they share
+    const size_t wanted = turns && !world->device && !world->share ? blocks + 1 : 0;
+    world->watch.turns = turns;
+    if (world->watch.room == wanted) return true; // of the plan before, whose turns are all over
     sk_release(&world->allocator, world->watch.moved);
     sk_release(&world->allocator, world->watch.found_held);
-    world->watch.moved = world->watch.found_held = NULL;
-    world->watch.turns = turns;
-    if (!SK_WATCHES || !turns || world->device || world->share)
-        return true; // other parts of a run move what they share
-    world->watch.moved = sk_allocate(&world->allocator, (blocks + 1) * sizeof *world->watch.moved);
-    world->watch.found_held = sk_allocate(&world->allocator, (blocks + 1) * sizeof *world->watch.found_held);
-    return world->watch.moved && world->watch.found_held;
+    world->watch.moved = world->watch.found_held = NULL, world->watch.room = 0;
+    if (!wanted) return true;
+    world->watch.moved = sk_allocate(&world->allocator, wanted * sizeof *world->watch.moved);
+    world->watch.found_held = sk_allocate(&world->allocator, wanted * sizeof *world->watch.found_held);
+    if (!world->watch.moved || !world->watch.found_held) return false;
+    world->watch.room = wanted;
+    return true;
 }
 
 /* How many substeps a step of dt has: as many as its method says, or more where pins are fast (`most`), but where they would be shorter

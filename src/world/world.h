@@ -183,6 +183,7 @@ struct skein_world {
     int plan_substeps; /* and how many substeps it has */
     struct {
         uint64_t *moved, *found_held; /* as a run has them; NULL: the plan has no ops with turns */
+        size_t room;                  /* of both */
         uint64_t turn, turns;         /* the next step's first one; how many the plan has */
         bool never;                   /* for tests: all is looked at */
     } watch;
