@@ -111,22 +111,25 @@ SK_INLINE sk_wide3 find_start(const sk_run *run, const sk_op *op, const origin *
                       r[6] * x.x + r[7] * x.y + r[8] * x.z + s.z};
 }
 
-/* Stops those that come through, and finds how far those may be pushed that were inside when the substep began. Whether any stopped. */
+/* Of those that are asked about, stops who comes through, and finds how far those may be pushed that were inside when the substep began. Whether any
+ * stopped. (Not of the others that lie beside them: by rounding one of them may seem to have been inside here, and who lies beside whom depends on
+ * how many lanes there are.) */
 static __attribute__((noinline)) bool look_back(sk_run *run, const sk_op *op, const contact_law *law,
-                                                const sk_pose *pose, origin o, size_t slot, encounter *e) {
+                                                const sk_pose *pose, origin o, size_t slot, sk_mask asked,
+                                                encounter *e) {
     const sk_collider *collider = op->rule;
     sk_wide3 from = find_start(run, op, &o, slot), seen = from;
     if (o.deforms) seen = plus(plus(from, times(law->h * e->speed, e->normal)), times(law->h, e->surface));
     sk_wide3 way = minus(xyz(e->x), seen);
     sk_wide s = e->distance - sk_dot_wide(way, e->normal), slack = e->reach - law->thickness;
-    sk_mask is_free = sk_positive(e->x.w), behind = is_free & sk_more(-slack, s), crossing = (sk_mask){0};
+    sk_mask behind = asked & sk_more(-slack, s), crossing = (sk_mask){0};
     if (o.passing != SK_NEVER_PASSED) crossing = behind;
     if (o.passing == SK_ANY_SHAPE) {
         sk_wide square = sk_dot_wide(way, way), d = e->distance;
-        crossing |= is_free & sk_more(square, sk_splat(o.long_way)) & (sk_negative(d) | sk_more(square, d * d));
+        crossing |= asked & sk_more(square, sk_splat(o.long_way)) & (sk_negative(d) | sk_more(square, d * d));
     }
     bool stopped = sk_any(crossing) && stop_at_surface(run, op, &o, slot, seen, crossing, behind);
-    sk_mask deep = began_deep(*law, *e, s);
+    sk_mask deep = asked & began_deep(*law, *e, s);
     if (!sk_any(deep)) return stopped;
     sk_contact start;
     collider->type->probe[SK_THIS_ISA](collider->params, pose, &from, &start);
@@ -148,9 +151,10 @@ SK_INLINE void probe_at_end(sk_run *run, const sk_op *op, const contact_law *law
     sk_wide s = off_plane(run, op, pose, o, slot, e, &way);
     sk_mask asked = sk_more(sk_splat(o->least), s + e->reach);
     if (o->passing == SK_ANY_SHAPE) asked |= sk_more(sk_dot_wide(way, way), sk_splat(o->long_way));
-    if (!sk_any(asked & sk_positive(e->x.w))) return;
+    asked &= sk_positive(e->x.w);
+    if (!sk_any(asked)) return;
     encounter seen = *e;
-    bool stopped = look_back(run, op, law, pose, *o, slot, &seen);
+    bool stopped = look_back(run, op, law, pose, *o, slot, asked, &seen);
     if (stopped) probe(op->rule, law, pose, sk_load_part(run->vector[SK_X], slot, packed), (sk_wide){0}, e);
     e->level = seen.level, e->leaving = seen.leaving;
 }
