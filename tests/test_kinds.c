@@ -2,6 +2,7 @@
 #include "all_methods.h"
 #include "helpers.h"
 #include "irregular.h"
+#include "world/world.h"
 #include <skein/formula.h>
 
 /* Each built-in kind, as a text. */
@@ -379,6 +380,58 @@ static void a_held_strip_sags_the_same_with_any_substeps(void **state) {
     }
 }
 
+/* An irregular strip of cells of 1 cm, held by its first two columns; `rise`: of the middle, in m. */
+static skein_world *irregular_strip(const char *by, double rise, double turn) {
+    enum { ROWS = 6, COLUMNS = 17 };
+    skein_world *world = new_world("backward_euler", 1);
+    skein_mesh mesh = irregular_mesh(ROWS, COLUMNS, false);
+    double *p = (double *)mesh.positions;
+    for (size_t i = 0; i < mesh.vertex_count; i++) {
+        p[3 * i] *= 0.01, p[3 * i + 2] *= 0.01;
+        p[3 * i + 1] = rise * sin(acos(-1.0) * p[3 * i] / (0.01 * (COLUMNS - 1)));
+    }
+    add_and_free(world, mesh, p,
+                 SKEIN_SETTINGS(SKEIN_VEC3("rotation", 0, turn, turn), SKEIN_TEXT("pins", "box -9 -9 -9 0.013 9 9"),
+                                SKEIN_TEXT("bend.by", by), SKEIN_REAL("bend.rigidity", 0.02),
+                                SKEIN_REAL("stretch.tether", HUGE_VAL)));
+    return world;
+}
+
+static const char *bends_by(const skein_world *world) {
+    for (size_t i = 0; i < world->rules.batches.count; i++)
+        if (!strcmp(world->rules.batches.data[i]->label, "bend")) return world->rules.batches.data[i]->type->kind.name;
+    return "nothing";
+}
+
+/* What began flat, however it lay, bends by curvature where nothing else is said, and is as stiff as by angles; what was bent does by these. */
+static void a_mesh_that_began_flat_bends_by_curvature(void **state) {
+    (void)state;
+    static const struct {
+        const char *by;
+        double rise, turn;
+        const char *then;
+    } sheets[] = {{"shape", 0, 0, "isometric"},    {"shape", 0, 40, "isometric"}, {"shape", 1e-7, 40, "isometric"},
+                  {"shape", 0.002, 0, "dihedral"}, {"angle", 0, 0, "dihedral"},   {"curvature", 0.002, 0, "isometric"}};
+    for (size_t i = 0; i < COUNT(sheets); i++) {
+        skein_world *world = irregular_strip(sheets[i].by, sheets[i].rise, sheets[i].turn);
+        assert_string_equal(bends_by(world), sheets[i].then);
+        skein_world_destroy(world);
+    }
+    double sag[2];
+    for (int k = 0; k < 2; k++) {
+        skein_world *world = irregular_strip(k ? "angle" : "shape", 0, 0);
+        add_gravity(world);
+        OK(world, skein_force_add(world, "drag", SKEIN_SETTINGS(SKEIN_REAL("rate", 25)), NULL));
+        steps(world, 150, 1.0 / 60);
+        sag[k] = 0;
+        for (size_t i = 0; i < skein_particle_count(world); i++) sag[k] = fmax(sag[k], -position_of(world, i).y);
+        skein_world_destroy(world);
+    }
+    printf("an irregular strip sags by %.1f mm by curvature, %.1f by angles\n", 1e3 * sag[0], 1e3 * sag[1]);
+    assert_true(sag[0] > 0.003 && sag[0] < 0.05); // of 15 cm
+    assert_share(sag[0], sag[1], 0.05);
+}
+
 /* ---- large turns ---- */
 
 /* A rigid fold is taken back by half a radian of its gradient at a time, a smaller one at once; by PBD and by XPBD, whose multipliers
@@ -471,6 +524,7 @@ int main(void) {
         cmocka_unit_test(small_swings_have_the_frequency_of_the_gradient),
         cmocka_unit_test(a_held_sheet_sags_as_a_beam),
         cmocka_unit_test(a_held_strip_sags_the_same_with_any_substeps),
+        cmocka_unit_test(a_mesh_that_began_flat_bends_by_curvature),
         cmocka_unit_test(bad_constraints_are_refused),
     };
     return cmocka_run_group_tests(tests, NULL, NULL);

@@ -4,8 +4,10 @@
  * stretch, the worst of all frames: 64 x 64 2.9 and 12 % (with spans alone 3.0 and 12), 128 x 128 2.8 and 22 (3.8 and 22), for 1.4 times the time.
  * Where all hubs stood for themselves: 1.5 and 7.6, and 3.0 and 20; but meshes of regular triangles that hung by four corners blew up. Those
  * of the finest level by a half or not at all 3.0 and 3.3 % of 128 x 128; altogether 2.6, but ten times the energy at rest. Shares that are exact for whatever
- * moves as a plane does (moving least squares) are no better. Reaches of 1.2 to 2.5, shares squared, distances up to 3 spacings, and
- * one sweep or four change 64 by 0.2 % and 128 by 0.4, either way; spacings that begin at 4 edges cost 0.7. */
+ * moves as a plane does (moving least squares) are no better. Shares squared, distances up to 3 spacings,
+ * and four sweeps change 64 by 0.2 % and 128 by 0.4, either way; one sweep costs 0.1 to 0.15; spacings that begin at 4 edges 0.7.
+ * A reach of 1.6 has 1.3 times as many hubs to take shares of as 1.4, one of 1.25 four fifths: 64 x 64 1.88, 1.81 and 1.75 % (most 8.1, 7.9, 7.8), 128 x 128
+ * 1.35, 1.31 and 1.32 (14, 13, 11.5), 180 x 180 1.44, 1.42 and 1.42 (17, 14, 12); but a roof that hangs by two corners 29, 32 and 62 % at most. */
 #include "bodies/aggregate.h"
 
 #include <math.h>
@@ -21,7 +23,7 @@ enum {
     LEAST_PARTICLES = 2000, /* smaller meshes are firm enough with spans, and faster */
     SWEEPS = 2              /* of its distances, forth and back */
 };
-static const double reach = 1.6, /* hubs' distances that a vertex takes shares up to: a hub is within one */
+static const double reach = 1.4, /* hubs' distances that a vertex takes shares up to: a hub is within one */
     long_way = 2,                /* hubs that are nearer have a distance */
     finest_itself = 0.75;        /* hubs of the finest level stand for themselves so far, and so are firmer */
 
@@ -159,13 +161,37 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
     return true;
 }
 
+/* Deals ties to what is carried, whose shares come in pairs (an odd one has one of 0 after it), and to hubs, whose ties follow each other.
+ * `row` is a member's place among what is carried, or UINT32_MAX; `next` has room for all carried ones. */
+static void deal_ties(const builder *b, const level *finer, const level *l, const double *sum, const uint32_t *row,
+                      uint32_t *next, sk_aggregate *a) {
+    for (size_t i = 0; i < l->ties.count; i++)
+        if (row[l->ties.data[i].member] != UINT32_MAX) a->start[row[l->ties.data[i].member] + 1]++;
+    for (size_t i = 0; i < a->count; i++) {
+        next[i] = a->start[i];
+        a->start[i + 1] += a->start[i] + a->start[i + 1] % 2;
+    }
+    for (size_t i = 0, part = 0; i < l->ties.count; i++) {
+        const tie *t = &l->ties.data[i];
+        if (row[t->member] == UINT32_MAX) continue;
+        const uint32_t at = next[row[t->member]]++;
+        a->of[at] = t->hub;
+        a->share[at] = (real)(share_of(b, t) / sum[t->member]);
+        a->from[part] = row[t->member];
+        a->part[part++] = (real)part_of(b, finer, l, sum, t);
+        a->first_part[t->hub + 1] = (uint32_t)part;
+    }
+    for (size_t i = 0; i < a->hub_count; i++)
+        if (a->first_part[i + 1] < a->first_part[i]) a->first_part[i + 1] = a->first_part[i];
+}
+
 /* What is carried, in the order of members. */
 static sk_aggregate *carried_by(const builder *b, const level *finer, const level *l, const double *sum,
                                 uint32_t first) {
-    size_t carried = finer->count - l->count, shares = 0, next = 0;
-    for (size_t i = 0; i < l->ties.count; i++) shares += !is_hub(b, finer, l->ties.data[i].member);
-    sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, shares);
-    uint32_t *row = sk_allocate(b->allocator, (finer->count + 1) * sizeof *row);
+    size_t carried = finer->count - l->count, parts = 0, next = 0;
+    for (size_t i = 0; i < l->ties.count; i++) parts += !is_hub(b, finer, l->ties.data[i].member);
+    sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, parts + carried, parts);
+    uint32_t *row = sk_allocate(b->allocator, (finer->count + carried) * sizeof *row);
     if (!a || !row) {
         sk_aggregate_release(a, b->allocator);
         sk_release(b->allocator, row);
@@ -183,19 +209,7 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
         a->particle[next] = first + finer->particle[i];
         row[i] = (uint32_t)next++;
     }
-    for (size_t i = 0; i < l->ties.count; i++)
-        if (row[l->ties.data[i].member] != UINT32_MAX) a->start[row[l->ties.data[i].member] + 1]++;
-    for (size_t i = 0; i < carried; i++) a->start[i + 1] += a->start[i];
-    for (size_t i = l->ties.count; i-- > 0;) { // from behind, so that starts come out as they were
-        const tie *t = &l->ties.data[i];
-        if (row[t->member] == UINT32_MAX) continue;
-        const uint32_t at = --a->start[row[t->member] + 1];
-        a->of[at] = t->hub;
-        a->share[at] = (real)(share_of(b, t) / sum[t->member]);
-        a->part[at] = (real)part_of(b, finer, l, sum, t);
-    }
-    for (size_t i = 0; i < carried; i++) a->start[i] = a->start[i + 1];
-    a->start[carried] = (uint32_t)shares;
+    deal_ties(b, finer, l, sum, row, row + finer->count, a);
     sk_release(b->allocator, row);
     return a;
 }

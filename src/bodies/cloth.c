@@ -75,7 +75,7 @@ static const skein_field fields[] = {
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
         "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
-        "the rigidity; \"shape\": lines where it is a flat grid, else angles; or springs over folds"),
+        "the rigidity; \"shape\": lines where it is a flat grid, curvature where it is flat, else angles; or springs over folds"),
     SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 0, 0, SK_UNBOUNDED, "of the springs over folds"),
     SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of the springs over folds"),
     SK_REAL(cloth_params, rigidity, "bend.rigidity", "N m", 1e-5, 0, SK_UNBOUNDED,
@@ -214,7 +214,9 @@ static skein_status add_bending(tailor *t) {
                        "this mesh is no flat grid of rectangles: set it to shape, angle or curvature");
     if (t->lines.flat && (by == BY_LINES || by == BY_SHAPE))
         return sk_lines_add_bending(&t->lines, t->world, t->body, t->params->rigidity, t->error);
-    const sk_constraint_type *type = by == BY_CURVATURE ? &sk_isometric : &sk_dihedral;
+    // what began flat bends back to that by either; by curvature in a quarter of the time
+    bool curvature = by == BY_CURVATURE || (by == BY_SHAPE && sk_sheet_is_flat(&t->sheet));
+    const sk_constraint_type *type = curvature ? &sk_isometric : &sk_dihedral;
     sk_hinges hinges;
     skein_status status = sk_hinges_find(&hinges, &t->sheet, &t->springs, type, t->rank, t->error);
     if (status) return status;

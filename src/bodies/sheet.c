@@ -176,8 +176,8 @@ static skein_status join(sk_sheet *sheet, double distance, skein_error *error) {
     return status;
 }
 
-/* Newell's normal of a face; its length is twice the area, also where the face is not flat or not convex. */
-static double area_of(const sk_sheet *sheet, const uint32_t *corners, size_t size) {
+/* The area of a face and its normal (Newell's), which is as long, also where the face is not flat or not convex. */
+static double measure_face(const sk_sheet *sheet, const uint32_t *corners, size_t size, double normal[3]) {
     double n[3] = {0, 0, 0};
     for (size_t k = 0; k < size; k++) {
         const double *o = sheet->position[corners[0]], *a = sheet->position[corners[k]],
@@ -187,6 +187,7 @@ static double area_of(const sk_sheet *sheet, const uint32_t *corners, size_t siz
         n[1] += u[2] * w[0] - u[0] * w[2];
         n[2] += u[0] * w[1] - u[1] * w[0];
     }
+    for (int k = 0; k < 3; k++) normal[k] = 0.5 * n[k];
     return 0.5 * sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
 }
 
@@ -212,7 +213,7 @@ skein_status sk_sheet_weld(sk_sheet *sheet, double distance, skein_error *error)
         filled += size;
 
         // its area, shared out to the corners; a sliver counts as none
-        double area = size ? area_of(sheet, face, size) : 0, longest = 0;
+        double normal[3], area = size ? measure_face(sheet, face, size, normal) : 0, longest = 0;
         for (size_t k = 0; k < size; k++) {
             const double *a = sheet->position[face[k]], *b = sheet->position[face[(k + 1) % size]];
             double square =
@@ -228,4 +229,21 @@ skein_status sk_sheet_weld(sk_sheet *sheet, double distance, skein_error *error)
     }
     sheet->face_start[sheet->face_count] = filled;
     return SKEIN_OK;
+}
+
+bool sk_sheet_is_flat(const sk_sheet *sheet) {
+    const double nearly = 1e-3;
+    double first[3] = {0, 0, 0}, length = 0;
+    for (size_t f = 0; f < sheet->face_count; f++) {
+        const uint32_t *face = sheet->corners + sheet->face_start[f];
+        size_t size = sheet->face_area[f] > 0 ? sheet->face_start[f + 1] - sheet->face_start[f] : 0;
+        for (size_t k = 1; k + 1 < size; k++) {
+            const uint32_t triangle[3] = {face[0], face[k], face[k + 1]};
+            double normal[3], along = 0, area = measure_face(sheet, triangle, 3, normal);
+            if (!(length > 0)) memcpy(first, normal, sizeof first), length = area;
+            for (int i = 0; i < 3; i++) along += first[i] * normal[i];
+            if (!(along >= (1 - 0.5 * nearly * nearly) * length * area)) return false;
+        }
+    }
+    return length > 0;
 }

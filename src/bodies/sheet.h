@@ -39,6 +39,9 @@ void sk_points_transform(double (*points)[3], size_t count, double scale, const 
                          const double offset[3]);
 /* Makes particles: vertices nearer than `distance` (0: none) become one. Then faces and areas. */
 skein_status sk_sheet_weld(sk_sheet *sheet, double distance, skein_error *error);
+/* Whether all triangles of its faces, cut from their first corners, look the same way, to a thousandth of a radian. After
+ * welding. */
+bool sk_sheet_is_flat(const sk_sheet *sheet);
 void sk_sheet_release(sk_sheet *sheet);
 
 #endif

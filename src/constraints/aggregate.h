@@ -22,20 +22,25 @@
 typedef struct sk_aggregate {
     const struct sk_aggregate *finer; /* whose hubs it has its own from, and carries the others; NULL: all vertices */
     bool coarsest;
-    size_t hub_count, count, share_count;
+    size_t hub_count, count, share_count, part_count;
     uint32_t *hub, *particle;           /* user's indices: the hubs, and those that are carried */
     uint32_t *hub_slot, *particle_slot; /* the same as slots */
-    uint32_t *start, *of; /* of a carried one its shares, from start[i] to start[i + 1]: of which hubs, as a place */
-    real *share, *part;   /* and how much of the mean of a hub it is; */
-    real *own;            /* of hubs: how much of it they are themselves, */
-    bool *pinned;         /* and whether they were built pinned: such a one stands for itself while it is */
+    uint32_t *start,
+        *of; /* of a carried one its shares, from start[i] to start[i + 1], an even number: of which hubs, as a place */
+    real *share;
+    uint32_t *first_part,
+        *from;    /* of a hub the parts of its mean, from first_part[i] to first_part[i + 1]: which carried ones, */
+    real *part;   /* and how much of it each is; */
+    real *own;    /* how much of it the hub is itself, */
+    bool *pinned; /* and whether it was built pinned: such a one stands for itself while it is */
     sk_vec4 *mean, *place,
-        *move; /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
-    int times; /* how often its distances are swept, forward and backward in turn */
+        *move;       /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
+    sk_vec4 *before; /* of carried ones: where they were then */
+    int times;       /* how often its distances are swept, forward and backward in turn */
 } sk_aggregate;
 
 /* All lists with that room, the numbers 0; NULL when there is no memory. */
-sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t carried, size_t shares);
+sk_aggregate *sk_aggregate_create(sk_allocator *allocator, size_t hubs, size_t carried, size_t shares, size_t parts);
 void sk_aggregate_release(sk_aggregate *aggregate, sk_allocator *allocator);
 /* Follows particles to their slots. */
 void sk_aggregate_arrange(sk_aggregate *aggregate, const sk_particles *particles);
