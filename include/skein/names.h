@@ -53,7 +53,7 @@
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_SPRINGS "springs"
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_TIES "ties"
 #define SKEIN_CLOTH_SHEAR_DIAGONALS_PINS "pins"
-#define SKEIN_CLOTH_BEND_BY "bend.by" /* a word; `dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take the rigidity; "shape": lines where it is a flat grid, curvature where it is flat, else angles; or springs over folds */
+#define SKEIN_CLOTH_BEND_BY "bend.by" /* a word; `dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take the rigidity; "shape": lines of a flat grid, curvature of what else is flat, else angles; or springs over folds */
 #define SKEIN_CLOTH_BEND_BY_SPRINGS "springs"
 #define SKEIN_CLOTH_BEND_BY_ANGLE "angle"
 #define SKEIN_CLOTH_BEND_BY_CURVATURE "curvature"

@@ -161,8 +161,8 @@ static bool sum_up(builder *b, const level *finer, level *l, double *sum) {
     return true;
 }
 
-/* Deals ties to what is carried, whose shares come in pairs (an odd one has one of 0 after it), and to hubs, whose ties follow each other.
- * `row` is a member's place among what is carried, or UINT32_MAX; `next` has room for all carried ones. */
+/* Deals ties to what is carried, and to hubs, whose ties follow each other: in pairs, an odd one with one of 0 after it. `row` is a
+ * member's place among what is carried, or UINT32_MAX; `next` has room for all carried ones. */
 static void deal_ties(const builder *b, const level *finer, const level *l, const double *sum, const uint32_t *row,
                       uint32_t *next, sk_aggregate *a) {
     for (size_t i = 0; i < l->ties.count; i++)
@@ -171,18 +171,20 @@ static void deal_ties(const builder *b, const level *finer, const level *l, cons
         next[i] = a->start[i];
         a->start[i + 1] += a->start[i] + a->start[i + 1] % 2;
     }
-    for (size_t i = 0, part = 0; i < l->ties.count; i++) {
-        const tie *t = &l->ties.data[i];
-        if (row[t->member] == UINT32_MAX) continue;
-        const uint32_t at = next[row[t->member]]++;
-        a->of[at] = t->hub;
-        a->share[at] = (real)(share_of(b, t) / sum[t->member]);
-        a->from[part] = row[t->member];
-        a->part[part++] = (real)part_of(b, finer, l, sum, t);
-        a->first_part[t->hub + 1] = (uint32_t)part;
+    size_t part = 0;
+    for (size_t hub = 0, i = 0; hub < a->hub_count; hub++) {
+        for (; i < l->ties.count && l->ties.data[i].hub == hub; i++) {
+            const tie *t = &l->ties.data[i];
+            if (row[t->member] == UINT32_MAX) continue;
+            const uint32_t at = next[row[t->member]]++;
+            a->of[at] = t->hub;
+            a->share[at] = (real)(share_of(b, t) / sum[t->member]);
+            a->from[part] = row[t->member];
+            a->part[part++] = (real)part_of(b, finer, l, sum, t);
+        }
+        part += part % 2;
+        a->first_part[hub + 1] = (uint32_t)part;
     }
-    for (size_t i = 0; i < a->hub_count; i++)
-        if (a->first_part[i + 1] < a->first_part[i]) a->first_part[i + 1] = a->first_part[i];
 }
 
 /* What is carried, in the order of members. */
@@ -190,7 +192,7 @@ static sk_aggregate *carried_by(const builder *b, const level *finer, const leve
                                 uint32_t first) {
     size_t carried = finer->count - l->count, parts = 0, next = 0;
     for (size_t i = 0; i < l->ties.count; i++) parts += !is_hub(b, finer, l->ties.data[i].member);
-    sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, parts + carried, parts);
+    sk_aggregate *a = sk_aggregate_create(b->allocator, l->count, carried, parts + carried, parts + l->count);
     uint32_t *row = sk_allocate(b->allocator, (finer->count + carried) * sizeof *row);
     if (!a || !row) {
         sk_aggregate_release(a, b->allocator);

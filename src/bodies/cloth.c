@@ -75,7 +75,7 @@ static const skein_field fields[] = {
     SK_CHOICE(
         cloth_params, bending, "bend.by", BY_SHAPE, "springs|angle|curvature|lines|shape",
         "`dihedral` angles at edges, `isometric` curvature there, or `straight` lines and `twist` of a flat grid, which take "
-        "the rigidity; \"shape\": lines where it is a flat grid, curvature where it is flat, else angles; or springs over folds"),
+        "the rigidity; \"shape\": lines of a flat grid, curvature of what else is flat, else angles; or springs over folds"),
     SK_REAL(cloth_params, bend.stiffness, "bend.stiffness", "N/m", 0, 0, SK_UNBOUNDED, "of the springs over folds"),
     SK_REAL(cloth_params, bend.damping, "bend.damping", "N s/m", 0, 0, SK_FAR, "of the springs over folds"),
     SK_REAL(cloth_params, rigidity, "bend.rigidity", "N m", 1e-5, 0, SK_UNBOUNDED,

@@ -25,14 +25,12 @@ typedef struct sk_aggregate {
     size_t hub_count, count, share_count, part_count;
     uint32_t *hub, *particle;           /* user's indices: the hubs, and those that are carried */
     uint32_t *hub_slot, *particle_slot; /* the same as slots */
-    uint32_t *start,
-        *of; /* of a carried one its shares, from start[i] to start[i + 1], an even number: of which hubs, as a place */
-    real *share;
-    uint32_t *first_part,
-        *from;    /* of a hub the parts of its mean, from first_part[i] to first_part[i + 1]: which carried ones, */
-    real *part;   /* and how much of it each is; */
-    real *own;    /* how much of it the hub is itself, */
-    bool *pinned; /* and whether it was built pinned: such a one stands for itself while it is */
+    uint32_t *start, *of; /* of a carried one its shares, from start[i] to start[i + 1]: of which hubs, as a place, */
+    real *share;          /* and how much of each; */
+    uint32_t *first_part, *from; /* of a hub the parts of its mean: which carried ones, */
+    real *part;                  /* and how much of each (both in pairs, an odd one with one of 0 after it); */
+    real *own;                   /* how much of it the hub is itself, */
+    bool *pinned;                /* and whether it was built pinned: such a one stands for itself while it is */
     sk_vec4 *mean, *place,
         *move;       /* of hubs, while a step runs: the mean before distances, its own place, what it has moved */
     sk_vec4 *before; /* of carried ones: where they were then */
