@@ -214,7 +214,7 @@ static skein_status add_bending(tailor *t) {
                        "this mesh is no flat grid of rectangles: set it to shape, angle or curvature");
     if (t->lines.flat && (by == BY_LINES || by == BY_SHAPE))
         return sk_lines_add_bending(&t->lines, t->world, t->body, t->params->rigidity, t->error);
-    // what began flat bends back to that by either; by curvature in a quarter of the time
+    // what began flat bends back to that by either; by curvature in half the time
     bool curvature = by == BY_CURVATURE || (by == BY_SHAPE && sk_sheet_is_flat(&t->sheet));
     const sk_constraint_type *type = curvature ? &sk_isometric : &sk_dihedral;
     sk_hinges hinges;
